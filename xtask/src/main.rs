@@ -1,7 +1,9 @@
-//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery | performance | install`.
+//! Checks and counts of the repository:
+//! `cargo xtask layers | paths | words | size | surface | gallery | performance | install`.
 
 mod install;
 mod layers;
+mod paths;
 mod size;
 mod source;
 mod surface;
@@ -14,6 +16,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   layers [--check]   crates, modules and their imports, also into docs/architecture.md;
                      --check fails on a circle, an upward import, an old page or a folder of
                      more than 15 files
+  paths              paths in CONTRIBUTING.md, docs/architecture.md and docs/adding; fails where one does not
+                     exist, or where a file does not contain a name that the table in docs/architecture.md
+                     gives after it
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in xtask/surface.txt
@@ -31,6 +36,7 @@ fn main() -> ExitCode {
     let done = match arguments.as_slice() {
         ["layers"] => layers::print(root),
         ["layers", "--check"] => layers::check(root),
+        ["paths"] => paths::check(root),
         ["words"] => words::check(root),
         ["size"] => size::print(root),
         ["gallery", data @ ..] => gallery(root, data),

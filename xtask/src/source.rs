@@ -39,15 +39,20 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Files that a folder holds at most.
 pub const FILES: usize = 15;
 
-/// Folders with more than [`FILES`] files of git, and their number; results of measurements left out.
-pub fn crowded(root: &Path) -> Result<Vec<String>, String> {
+/// Paths of the files of git that match these pathspecs, one a line.
+pub fn tracked(root: &Path, specs: &[&str]) -> Outcome {
     let mut git = Command::new("git");
-    git.current_dir(root).args(["ls-files", "--", ".", ":!benches/results"]);
+    git.current_dir(root).args(["ls-files", "--"]).args(specs);
     let done = git.output().map_err(|e| format!("git: {e}"))?;
     if !done.status.success() {
         return Err(format!("git ls-files: {}", String::from_utf8_lossy(&done.stderr)));
     }
-    Ok(above(&String::from_utf8_lossy(&done.stdout)))
+    Ok(String::from_utf8_lossy(&done.stdout).into_owned())
+}
+
+/// Folders with more than [`FILES`] files of git, and their number; results of measurements left out.
+pub fn crowded(root: &Path) -> Result<Vec<String>, String> {
+    Ok(above(&tracked(root, &[".", ":!benches/results"])?))
 }
 
 /// The same of a list of paths.
