@@ -293,7 +293,7 @@ pub struct HorizonArgs {
     ///
     /// With --azimuths 4, a .png is a Stellarium horizon map. R, G, B, A are north, east, south, west. Each is 255 × (0.5 + 0.5 sign(s) √|s|), where s is the sine of the elevation. Voids have elevation 0.
     ///
-    /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
+    /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0, azimuth_005.625 and so on, with at least one decimal and at most seven.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr,png,ktx2}", help_heading = "Output")]
     pub output: PathBuf,
     /// A Fourier series for bevy-clipmap instead: coefficients, range of heights in metres

@@ -1,5 +1,8 @@
 //! Azimuths as files have them: compass degrees, clockwise from north.
 
+/// Decimals of an azimuth in a name. 360°/1024, of the most azimuths that a horizon has, is 0.3515625°.
+const DECIMALS: usize = 7;
+
 /// The layers of a file, one for each azimuth, in compass order.
 pub struct Compass {
     /// Compass azimuths in the order of layers, degrees, 0 to below 360.
@@ -28,14 +31,20 @@ impl Compass {
         Self { degrees: order.iter().map(|k| all[*k]).collect(), layer_of }
     }
 
-    /// Names of the layers: "azimuth_005.6", with as many decimals as make them distinct.
+    /// Names of the layers: "azimuth_000.0", "azimuth_005.625". Each has as many decimals as its azimuth, at least 1 and at
+    /// most [`DECIMALS`]: more only where two names would be equal.
     pub fn names(&self) -> Vec<String> {
         let named = |decimals: usize| -> Vec<String> {
-            let name = |degrees: &f64| format!("azimuth_{degrees:0w$.decimals$}", w = 4 + decimals);
+            let name = |degrees: &f64| {
+                let all = format!("{degrees:0w$.decimals$}", w = 4 + decimals);
+                let short = all.trim_end_matches('0');
+                let zero = if short.ends_with('.') { "0" } else { "" };
+                format!("azimuth_{short}{zero}")
+            };
             self.degrees.iter().map(name).collect()
         };
         let is_distinct = |names: &Vec<String>| names.windows(2).all(|pair| pair[0] != pair[1]);
-        (1..9).map(named).find(is_distinct).unwrap_or_else(|| named(9))
+        (DECIMALS..9).map(named).find(is_distinct).unwrap_or_else(|| named(9))
     }
 }
 
@@ -57,14 +66,39 @@ mod tests {
         assert_eq!(compass.names()[1], "azimuth_045.0");
         // Five azimuths from east miss the north.
         assert_eq!(Compass::of(&circle(5)).degrees, [18.0, 90.0, 162.0, 234.0, 306.0]);
-        assert_eq!(Compass::of(&circle(64)).names()[1], "azimuth_005.6");
+    }
+
+    /// A name states its azimuth exactly where 7 decimals do, else to 7 decimals.
+    #[test]
+    fn names_have_the_decimals_of_their_azimuths() {
+        for (count, starts) in [
+            (8, ["000.0", "045.0", "090.0"]),
+            (16, ["000.0", "022.5", "045.0"]),
+            (64, ["000.0", "005.625", "011.25"]),
+            (100, ["000.0", "003.6", "007.2"]),
+            (1024, ["000.0", "000.3515625", "000.703125"]),
+            // 360/28 is 12.857 142 857...
+            (28, ["000.0", "012.8571429", "025.7142857"]),
+        ] {
+            let names = Compass::of(&circle(count)).names();
+            assert_eq!(names[..3], starts.map(|degrees| format!("azimuth_{degrees}")), "{count}");
+        }
     }
 
     #[test]
     fn names_are_distinct_and_sorted() {
-        for azimuths in [circle(1024), circle(5000), vec![0.0, 1e-4, 1.0]] {
-            let names = Compass::of(&azimuths).names();
+        // The last two azimuths differ by 5.7e-9 degrees.
+        for azimuths in
+            [circle(1024), circle(5000), vec![0.0, 1e-4, 1.0], vec![0.0, 1.0, 1.0 + 1e-10]]
+        {
+            let compass = Compass::of(&azimuths);
+            let names = compass.names();
             assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
+            // Names are read as degrees.
+            for (name, degrees) in names.iter().zip(&compass.degrees) {
+                let found: f64 = name.strip_prefix("azimuth_").unwrap().parse().unwrap();
+                assert!((found - degrees).abs() <= 0.500_001e-7, "{name} for {degrees}");
+            }
         }
     }
 }
