@@ -133,6 +133,37 @@ fn hillshade_has_no_note_on_the_curvature() {
     }
 }
 
+/// A box has other slopes at its edges than the field has there, and the same inside. The note of a hillshade states that;
+/// the one on shadows is for other commands.
+#[test]
+fn a_hillshade_of_a_box_has_a_note_on_its_edges() {
+    let folder = Folder::new();
+    let heights: String = (0..25).map(|i| format!("{} ", 5 * (i % 5) * (i % 5))).collect();
+    let head = "ncols 5\nnrows 5\nxllcorner 1000\nyllcorner 2000\ncellsize 10\n";
+    folder.write("a.asc", (head.to_owned() + &heights).as_bytes());
+    let run = |words: &[&str]| {
+        let run = folder.run_without_driver(words);
+        assert_eq!(run.status, Some(0), "{words:?}: {}", run.err);
+        run.notes
+    };
+    let bbox = ["--bbox", "1010,2010,1040,2040"];
+    let whole = run(&["hillshade", "a.asc", "-o", "whole.npy"]);
+    let part = run(&["hillshade", "a.asc", "-o", "part.npy", bbox[0], bbox[1]]);
+    let said = "a.asc: read without the ground outside --bbox, so slopes at its edges are those of the cells inside; for \
+                others, use a box that is wider by a cell and cut the result: `gdal_translate -projwin 1010 2040 1040 2010";
+    assert!(part.contains(said) && !part.contains("shadow"), "{part}");
+    assert!(!whole.contains("--bbox"), "{whole}");
+    let plan = run(&["plan", "a.asc", bbox[0], bbox[1]]);
+    let said =
+        "outside --bbox, which casts no shadow into it; for its shadows, use a wider box and cut";
+    assert!(plan.contains(said), "{plan}");
+    let [whole, part] = ["whole.npy", "part.npy"].map(|name| read(&folder.path(name)));
+    assert_eq!((part.rows, part.cols), (3, 3));
+    // The middle of both, and the texel west of it.
+    assert_eq!(part.planes[0][4], whole.planes[0][12]);
+    assert_ne!(part.planes[0][3], whole.planes[0][11]);
+}
+
 #[test]
 fn wrong_maps_are_refused() {
     let folder = Folder::new();
