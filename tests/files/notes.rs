@@ -103,6 +103,52 @@ fn a_known_unit_of_heights_needs_no_warning() {
     }
 }
 
+/// Cells in the unit of a `.prj` beside the file become metres, with a note. Heights do not: the warning states that, unless
+/// the file states their unit.
+#[test]
+fn cells_in_the_unit_of_a_prj_get_a_note() {
+    let prj = |unit: &str| {
+        format!(
+            r#"PROJCS["mine",GEOGCS["x",UNIT["Degree",0.0174532925199433]],PROJECTION["y"],UNIT[{unit}]]"#
+        )
+    };
+    let [metre, foot] = [r#""Meter",1.0"#, r#""Foot",0.3048"#].map(prj);
+    let folder = tempfile::tempdir().unwrap();
+    let text = "ncols 2\nnrows 2\nxllcorner 1000\nyllcorner 2000\ncellsize 30\n1 2\n3 4\n";
+    std::fs::write(folder.path().join("a.asc"), text).unwrap();
+    let metres = item("UNITTYPE", "metre");
+    std::fs::write(folder.path().join("open.tif"), with(&[SCALE, TIE])).unwrap();
+    let stated = with(&[SCALE, TIE, (METADATA, Tag::Text(&metres))]);
+    std::fs::write(folder.path().join("stated.tif"), stated).unwrap();
+    let note = "cells are in units of 0.3048 m and become metres";
+    let warning = "heights are read as metres; the cells are in feet. If the heights are too, use \
+                   `z_scale 0.3048`; if they are metres, `z_scale 1`";
+    for (name, text, unit_m, is_open) in [
+        ("a.asc", &metre, 1.0, true),
+        ("a.asc", &foot, 0.3048, true),
+        ("open.tif", &metre, 1.0, true),
+        ("open.tif", &foot, 0.3048, true),
+        ("stated.tif", &foot, 0.3048, false),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(path.with_extension("prj"), text).unwrap();
+        let read = |is_unit_known| {
+            let options = HeightOptions { is_unit_known, ..HeightOptions::default() };
+            read_field(&path, &options).unwrap()
+        };
+        let [open, known] = [false, true].map(read);
+        let cell = open.field.cell_m()[0];
+        assert!((cell / (30.0 * unit_m) - 1.0).abs() < 1e-12, "{name}: {cell}");
+        let is_feet = unit_m != 1.0;
+        let count = |all: &[String], text: &str| all.iter().filter(|one| *one == text).count();
+        assert_eq!(count(&open.notes, note), usize::from(is_feet), "{name}: {:?}", open.notes);
+        let warned = usize::from(is_feet && is_open);
+        assert_eq!(count(&open.warnings, warning), warned, "{name}: {:?}", open.warnings);
+        assert_eq!(count(&known.warnings, warning), 0, "{name}: {:?}", known.warnings);
+        assert_eq!(open.field.heights_m(), known.field.heights_m(), "{name}");
+    }
+}
+
 /// The no-data value of the file stays in the heights where another replaces it: the warning counts them.
 #[test]
 fn a_replaced_no_data_value_is_counted() {

@@ -32,8 +32,8 @@ const WEB_MERCATOR: [u16; 2] = [3857, 3785];
 /// Values of the tags.
 pub(crate) struct Geo {
     pub cell: Cell,
-    /// Metres in a unit of height.
-    pub unit_m: f64,
+    /// Metres in a unit of height, where the file states one that is known.
+    pub unit_m: Option<f64>,
     /// What is assumed of a unit that is not stated or not known.
     pub unit_warning: Option<String>,
     /// A height is the value times the first, plus the second.
@@ -68,12 +68,11 @@ pub(crate) fn read(
     let of_system = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
     let name = unit_name(path, tiff, band)?;
     let of_band = name.as_deref().and_then(unit::metres);
-    let of_heights = of_band.or(of_system);
-    let unit_m = of_heights.unwrap_or(1.0);
+    let unit_m = of_band.or(of_system);
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let about_name = name.and_then(|name| unit::warning(&name, of_band, of_system));
     let mut unit_warning = None;
-    match of_heights {
+    match unit_m {
         Some(_) => warnings.extend(about_name),
         None => unit_warning = about_name,
     }
@@ -119,8 +118,8 @@ pub(crate) fn read(
             let of_crs = keys.short(PROJECTED_CRS).and_then(projection::unit_m);
             let unit = keys.length(path, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
             if unit != 1.0 {
-                notes.push(format!("cells are in units of {unit} m and become metres"));
-                if of_heights.is_none() {
+                notes.push(unit::cell_note(unit));
+                if unit_m.is_none() {
                     unit_warning.get_or_insert_with(|| unit::of_cells(unit));
                 }
             }

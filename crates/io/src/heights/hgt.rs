@@ -43,7 +43,8 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
     };
     let values =
         bytes.chunks_exact(2).map(|b| f64::from(i16::from_be_bytes([b[0], b[1]]))).collect();
-    Ok(Raster { cell, nodata: Some(VOID), georeference, ..Raster::bare(side, side, values) })
+    let (nodata, unit_m) = (Some(VOID), Some(1.0));
+    Ok(Raster { cell, nodata, unit_m, georeference, ..Raster::bare(side, side, values) })
 }
 
 /// Latitude and longitude of the tile's south-west grid point, from a name like `N44W072` or `s05e110`.

@@ -15,9 +15,9 @@ pub(crate) struct Raster {
     /// rounded to that type before it is compared.
     pub single: bool,
     pub cell: Cell,
-    /// Metres in the file's unit of height.
-    pub unit_m: f64,
-    /// What is assumed of that unit, where the file does not state one that is known.
+    /// Metres in the file's unit of height, where the file states one that is known.
+    pub unit_m: Option<f64>,
+    /// What is assumed of that unit, where the file does not.
     pub unit_warning: Option<String>,
     /// A height is the value times the first, plus the second.
     pub scale: [f64; 2],
@@ -45,7 +45,7 @@ impl Raster {
             values,
             single: false,
             cell: Cell::Unknown,
-            unit_m: 1.0,
+            unit_m: None,
             unit_warning: None,
             scale: [1.0, 0.0],
             nodata: None,
@@ -84,7 +84,8 @@ impl Raster {
                 "{of} {mark}, which often marks a void, and the file names no such value; `nodata` {mark} makes voids of them"
             ));
         }
-        let (factor, [scale, offset]) = (self.unit_m * options.z_scale, self.scale);
+        let unit_m = self.unit_m.unwrap_or(1.0);
+        let (factor, [scale, offset]) = (unit_m * options.z_scale, self.scale);
         if factor != 1.0 || self.scale != [1.0, 0.0] {
             self.values.iter_mut().for_each(|v| *v = factor * (*v * scale + offset));
         }
@@ -92,8 +93,7 @@ impl Raster {
             let text = format!("scale {scale} and offset {offset} of the file are applied");
             self.notes.push(text);
         }
-        if self.unit_m != 1.0 {
-            let unit_m = self.unit_m;
+        if unit_m != 1.0 {
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
         }
         let unit_warning = self.unit_warning.take();

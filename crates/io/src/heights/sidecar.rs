@@ -1,6 +1,6 @@
 //! Files beside a raster that state where it lies: world files, and ESRI's `.prj`.
 
-use super::{Cell, Raster, looks_like_degrees, projection};
+use super::{Cell, Raster, looks_like_degrees, projection, unit};
 use crate::georeference::{GeoKeys, Georeference};
 use std::path::{Path, PathBuf};
 
@@ -81,7 +81,7 @@ impl Sidecar {
             );
             return;
         };
-        let mut unit = None;
+        let mut used = None;
         match crs.filter(|_| at.keys == GeoKeys::default()) {
             None => {}
             Some((name, None)) => warnings.push(format!(
@@ -101,11 +101,17 @@ impl Sidecar {
                 at.keys = crs.code.map_or_else(GeoKeys::default, |code| {
                     GeoKeys::of_code(code, crs.is_geographic)
                 });
-                unit = Some(crs);
+                if !crs.is_geographic && crs.unit_m != 1.0 {
+                    notes.push(unit::cell_note(crs.unit_m));
+                    if raster.unit_m.is_none() {
+                        raster.unit_warning.get_or_insert_with(|| unit::of_cells(crs.unit_m));
+                    }
+                }
+                used = Some(crs);
             }
         }
         if has_changed {
-            raster.cell = cell(&at, unit.as_ref(), [raster.rows, raster.cols]);
+            raster.cell = cell(&at, used.as_ref(), [raster.rows, raster.cols]);
         }
         raster.georeference = Some(at);
     }
