@@ -98,7 +98,7 @@ fn reported(
     lacks: &str,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes, warnings } = read;
+    let files::FieldFile { field, georeference, notes, warnings, .. } = read;
     let name = match paths {
         [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
         _ => paths.iter().map(|path| path.display().to_string()).collect(),

@@ -4,7 +4,7 @@ mod attributes;
 mod layer;
 
 use crate::atomic::{Temporary, Written};
-use crate::heights::Raster;
+use crate::heights::{Raster, type_name};
 use crate::open;
 use ::exr::block::{self, UncompressedBlock, reader::ChunksReader, writer::ChunksWriter};
 use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, SampleType, Text};
@@ -199,9 +199,12 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         let expected = "one channel, or one called height, elevation, Z, Y or R that is no part of a colour or vector";
         return Err(Error::file(path, "header", found, expected));
     };
-    let single = file.sample_type(index) != SampleType::U32;
+    let sample_type = file.sample_type(index);
+    let single = sample_type != SampleType::U32;
+    let bits = 8 * sample_type.bytes_per_sample();
+    let data_type = type_name(if single { b'f' } else { b'u' }, bits);
     let (rows, cols, mut planes) = file.planes(&[index], |v| v)?;
-    Ok(Raster { single, ..Raster::bare(rows, cols, planes.swap_remove(0)) })
+    Ok(Raster { data_type, single, ..Raster::bare(rows, cols, planes.swap_remove(0)) })
 }
 
 /// R beside G or B is red, Y beside RY or BY a luminance, and any name beside X a vector's

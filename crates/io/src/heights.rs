@@ -20,7 +20,8 @@ use crate::georeference::Georeference;
 use crate::open::{self, Format};
 use crate::png;
 use mosaic::{Choose, Tile, Window};
-pub(crate) use raster::{Cell, Raster, looks_like_degrees};
+pub use raster::StoredHeights;
+pub(crate) use raster::{Cell, Raster, looks_like_degrees, type_name};
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use sidecar::Sidecar;
@@ -102,6 +103,8 @@ pub struct FieldFile {
     pub field: HeightField,
     /// The position: GeoTIFF, `.hgt` with its corner in its name, `.asc`, a world file.
     pub georeference: Option<Georeference>,
+    /// How the file stores its heights; of several files, the first.
+    pub stored: StoredHeights,
     /// What was chosen or converted, a sentence each.
     pub notes: Vec<String>,
     /// What may be wrong, a sentence each: guesses, and what of the file is not read.
@@ -316,6 +319,7 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
             raster.cell.metres(path)?
         }
     };
+    let stored = raster.stored();
     let Raster { rows, cols, values, voids, georeference, .. } = raster;
     notes.extend(georeference.as_ref().and_then(|at| projection::north_note(at, rows, cols)));
     let field = HeightField::new(rows, cols, &values, cell_m, voids);
@@ -326,5 +330,5 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
     let [more_notes, more_warnings] = about(&field);
     notes.extend(more_notes);
     warnings.extend(more_warnings);
-    Ok(FieldFile { field, georeference, notes, warnings })
+    Ok(FieldFile { field, georeference, stored, notes, warnings })
 }

@@ -33,7 +33,9 @@ pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use georeference::{GeoKeys, Georeference};
 pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
-pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights, read_mosaic};
+pub use heights::{
+    FieldFile, HeightOptions, StoredHeights, parse_heights, read_field, read_heights, read_mosaic,
+};
 pub use open::bytes_read;
 pub use png::{encode_png, write_codes_aside, write_png};
 pub use textures::{Block, Component, DdsWriter, Ktx2Writer, TexelFormat, Texels};

@@ -1,7 +1,7 @@
 //! PNG: grey heights, colour maps, pictures of results, and samples that are numbers.
 
 use crate::atomic::{Temporary, Written};
-use crate::heights::Raster;
+use crate::heights::{Raster, type_name};
 use crate::open;
 use ::png::{BitDepth, ColorType as Kind, Encoder, ScaledFloat};
 use image::codecs::png::PngDecoder;
@@ -85,7 +85,9 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     } else {
         (png.values.into_iter().map(f64::from).collect(), None)
     };
-    Ok(Raster { voids, is_8_bit: png.depth == 8, ..Raster::bare(png.rows, png.cols, values) })
+    let data_type = type_name(b'u', png.depth.into());
+    let bare = Raster::bare(png.rows, png.cols, values);
+    Ok(Raster { data_type, voids, is_8_bit: png.depth == 8, ..bare })
 }
 
 /// A picture in linear light.

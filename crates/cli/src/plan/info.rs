@@ -48,7 +48,13 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn facts(FieldFile { field, georeference, notes, warnings }: &FieldFile) -> Result<Value> {
+/// A number; NaN and infinities, which JSON lacks, as text.
+fn any_number(number: f64) -> Value {
+    if number.is_finite() { json!(number) } else { json!(number.to_string()) }
+}
+
+fn facts(read: &FieldFile) -> Result<Value> {
+    let FieldFile { field, georeference, stored, notes, warnings } = read;
     let at = georeference.as_ref();
     let in_flags =
         |all: &[String]| all.iter().map(|text| setup::flags_in(text)).collect::<Vec<_>>();
@@ -76,6 +82,11 @@ fn facts(FieldFile { field, georeference, notes, warnings }: &FieldFile) -> Resu
         "cell_m": [cell_x, cell_y],
         "size_m": [cell_x * cols as f64, cell_y * rows as f64],
         "extent": extent,
+        "data_type": stored.data_type,
+        "nodata": stored.nodata.map(any_number),
+        "scale": stored.scale[0],
+        "offset": stored.scale[1],
+        "vertical_unit_m": stored.unit_m,
         "heights_m": [lowest, highest],
         "void_share": voids as f64 / (rows * cols) as f64,
         "steep_share": steep as f64 / count.max(1) as f64,
@@ -119,6 +130,7 @@ fn say(args: &InfoArgs, facts: &Value) {
         let [west, south, east, north] = [0, 1, 2, 3].map(|i| number(&extent[i]));
         line("extent", format!("{west} to {east} east, {south} to {north} north"));
     }
+    line("values", values(facts));
     let [lowest, highest] = pair("heights_m");
     line("heights", format!("{lowest:.3} to {highest:.3} m"));
     line("voids", format!("{:.3} %", 100.0 * number(&facts["void_share"])));
@@ -140,6 +152,24 @@ fn say(args: &InfoArgs, facts: &Value) {
         for text in facts[key].as_array().into_iter().flatten() {
             line(name, text.as_str().unwrap_or_default().to_owned());
         }
+    }
+}
+
+/// How the file stores its heights: "int16, no data -32768, unit 1 m".
+fn values(facts: &Value) -> String {
+    let mut text = facts["data_type"].as_str().unwrap_or_default().to_owned();
+    match &facts["nodata"] {
+        Value::Null => {}
+        Value::String(nodata) => text += &format!(", no data {nodata}"),
+        nodata => text += &format!(", no data {}", nodata.as_f64().unwrap_or(f64::NAN)),
+    }
+    let [scale, offset] = ["scale", "offset"].map(|name| facts[name].as_f64().unwrap_or(f64::NAN));
+    if [scale, offset] != [1.0, 0.0] {
+        text += &format!(", scale {scale}, offset {offset}");
+    }
+    match facts["vertical_unit_m"].as_f64() {
+        Some(unit_m) => text + &format!(", unit {unit_m} m"),
+        None => text + ", unit not stated",
     }
 }
 

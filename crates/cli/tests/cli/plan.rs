@@ -4,8 +4,13 @@ use std::collections::HashSet;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
+use crate::formats::{HEIGHTS, Tag, colour, exr, png, tiff};
 use crate::{Folder, refused, succeeded};
+use ::exr::prelude::FlatSamples;
+use ::tiff::encoder::{Compression, colortype};
+use ::tiff::tags::Predictor;
 use ridgelight::scene::HeightField;
+use serde_json::{Value, json};
 
 const LIT: [&str; 6] = ["plan", "a.asc", "--sky", "1", "--sun", "135,30"];
 
@@ -199,6 +204,80 @@ fn info_states_what_a_file_holds() {
     // Four cells of 16.7 km: (66.8 km)² / (2 · 6371 km) = 350 m.
     let run = folder.run_without_driver(&["info", "steep.png", "--cell", "16700"]);
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
+}
+
+/// Type, no-data value, scale, offset and unit are those of the file, whatever the flags.
+#[test]
+fn info_states_how_a_file_stores_heights() {
+    let folder = Folder::new();
+    let text = "<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item>\
+                <Item name=\"OFFSET\" sample=\"0\" role=\"offset\">7</Item>\
+                <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">ft</Item></GDALMetadata>";
+    let scaled = tiff::<colortype::Gray64Float>(
+        4,
+        3,
+        &HEIGHTS.map(f64::from),
+        Compression::Uncompressed,
+        Predictor::None,
+        &[(42112, Tag::Text(text)), (42113, Tag::Text("nan"))],
+    );
+    folder.write("scaled.tif", &scaled);
+    let (none, unsigned) = (Predictor::None, HEIGHTS.map(|h| h as u8));
+    let plain = Compression::Uncompressed;
+    folder.write("u8.tif", &tiff::<colortype::Gray8>(4, 3, &unsigned, plain, none, &[]));
+    folder.write("u8.png", &png(4, 3, colour::GREY, 8, &[], &unsigned));
+    let whole = FlatSamples::U32(HEIGHTS.map(|h| h as u32).to_vec());
+    folder.write("whole.exr", &exr(4, 3, &[("Z", whole)]));
+    let null = Value::Null;
+    for (name, data_type, nodata, scale, unit_m, said) in [
+        ("a.png", "uint16", null.clone(), [1.0, 0.0], null.clone(), "uint16, unit not stated"),
+        ("u8.png", "uint8", null.clone(), [1.0, 0.0], null.clone(), "uint8, unit not stated"),
+        ("a.exr", "float32", null.clone(), [1.0, 0.0], null.clone(), "float32, unit not stated"),
+        ("whole.exr", "uint32", null.clone(), [1.0, 0.0], null.clone(), "uint32, unit not stated"),
+        ("a.npy", "int16", null.clone(), [1.0, 0.0], null.clone(), "int16, unit not stated"),
+        ("a.npz", "int16", null.clone(), [1.0, 0.0], null.clone(), "int16, unit not stated"),
+        ("u8.tif", "uint8", null.clone(), [1.0, 0.0], null.clone(), "uint8, unit not stated"),
+        (
+            "a.tif",
+            "int16",
+            json!(-32768.0),
+            [1.0, 0.0],
+            null.clone(),
+            "int16, no data -32768, unit not stated",
+        ),
+        (
+            "N44W072.hgt",
+            "int16",
+            json!(-32768.0),
+            [1.0, 0.0],
+            json!(1.0),
+            "int16, no data -32768, unit 1 m",
+        ),
+        ("a.asc", "text", json!(-9999.0), [1.0, 0.0], null, "text, no data -9999, unit not stated"),
+        (
+            "scaled.tif",
+            "float64",
+            json!("NaN"),
+            [0.5, 7.0],
+            json!(0.3048),
+            "float64, no data NaN, scale 0.5, offset 7, unit 0.3048 m",
+        ),
+    ] {
+        for flags in [&["--z-scale", "2", "--nodata", "100"][..], &[]] {
+            let printed = ["info", name, "--json", "-"];
+            let run = folder.run_without_driver(&[&printed[..], flags].concat());
+            assert_eq!(run.status, Some(0), "{name}: {}", run.err);
+            let facts: Value = serde_json::from_str(&run.out).unwrap();
+            let found = ["data_type", "nodata", "scale", "offset", "vertical_unit_m"]
+                .map(|key| facts.get(key).unwrap_or_else(|| panic!("{name}: no {key}")).clone());
+            let [factor, offset] = scale;
+            let expected =
+                [json!(data_type), nodata.clone(), json!(factor), json!(offset), unit_m.clone()];
+            assert_eq!(found, expected, "{name} {flags:?}");
+        }
+        let run = folder.run_without_driver(&["info", name]);
+        assert!(run.out.contains(&format!("  values     {said}\n")), "{}", run.out);
+    }
 }
 
 /// `info --json -` prints what it would write to a file, and nothing else. Warnings also go to standard error, as with --quiet.

@@ -1,7 +1,7 @@
 //! NumPy arrays: a reader of every integer and float type, a streaming writer of f32.
 
 use crate::atomic::{Temporary, Written};
-use crate::heights::{Raster, tif};
+use crate::heights::{Raster, tif, type_name};
 use crate::open;
 use half::f16;
 use ridgelight::scene::HeightField;
@@ -86,9 +86,12 @@ impl<'a> Array<'a> {
         (self.kind == b'u').then_some(self.size)
     }
 
-    /// Whether values are 16- or 32-bit floats.
-    pub fn single(&self) -> bool {
-        self.kind == b'f' && self.size < 8
+    /// Some of its values as a raster of unknown cell size.
+    fn raster(&self, rows: usize, cols: usize, values: Vec<f64>) -> Raster {
+        // 16- or 32-bit floats.
+        let single = self.kind == b'f' && self.size < 8;
+        let data_type = type_name(self.kind, 8 * self.size);
+        Raster { data_type, single, ..Raster::bare(rows, cols, values) }
     }
 
     /// The value at an index in memory order; 64-bit integers beyond 2⁵³ are rounded.
@@ -162,7 +165,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Ra
             let index = index.ok_or_else(|| tif::no_band(path, band, planes))?;
             let (rows, cols) = open::size(path, "header: shape", rows as u64, cols as u64)?;
             let values = array.values().skip(index * rows * cols).take(rows * cols).collect();
-            Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
+            Ok(array.raster(rows, cols, values))
         }
         ([_, _], Some(band)) if band != 1 => Err(tif::no_band(path, band, 1)),
         ([_, _, _], None) => {
@@ -182,7 +185,7 @@ pub(crate) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster>
     };
     let (rows, cols) = open::size(path, &place, rows as u64, cols as u64)?;
     let values = array.values().collect();
-    Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
+    Ok(array.raster(rows, cols, values))
 }
 
 /// The header of an array of this type ("<f4") and shape, last index running fastest.

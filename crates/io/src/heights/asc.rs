@@ -123,7 +123,8 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let cell = header.cell(path, rows, cols)?;
     let georeference = header.georeference(rows);
     let nodata = header.get("nodata_value");
-    Ok(Raster { cell, nodata, georeference, ..Raster::bare(rows, cols, values) })
+    let data_type = "text".to_owned();
+    Ok(Raster { data_type, cell, nodata, georeference, ..Raster::bare(rows, cols, values) })
 }
 
 /// A number as these files write them; `nan` is accepted, so that it can mark no data.

@@ -1,7 +1,7 @@
 //! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, without a header.
 
 use crate::georeference::{GeoKeys, Georeference};
-use crate::heights::{Cell, Raster};
+use crate::heights::{Cell, Raster, type_name};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -44,7 +44,9 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
     let values =
         bytes.chunks_exact(2).map(|b| f64::from(i16::from_be_bytes([b[0], b[1]]))).collect();
     let (nodata, unit_m) = (Some(VOID), Some(1.0));
-    Ok(Raster { cell, nodata, unit_m, georeference, ..Raster::bare(side, side, values) })
+    let data_type = type_name(b'i', 16);
+    let bare = Raster::bare(side, side, values);
+    Ok(Raster { data_type, cell, nodata, unit_m, georeference, ..bare })
 }
 
 /// Latitude and longitude of the tile's south-west grid point, from a name like `N44W072` or `s05e110`.

@@ -1,6 +1,6 @@
 //! Several grids as one, and parts of grids, by their positions.
 
-use super::Raster;
+use super::{Raster, StoredHeights};
 use crate::georeference::Georeference;
 use crate::open;
 use ridgelight::{Error, Result};
@@ -23,6 +23,7 @@ pub(super) struct Tile {
 pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
     let Tile { path: first, raster: grid, .. } = &tiles[0];
     let (first, at, cell) = (first.clone(), placed(first, grid)?.clone(), grid.cell);
+    let StoredHeights { data_type, nodata, scale, unit_m } = grid.stored();
     let mut corners = Vec::with_capacity(tiles.len());
     for Tile { path, raster, .. } in &tiles {
         let own = placed(path, raster)?;
@@ -57,7 +58,9 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     }
     // The grid's first row and column from those of the first tile.
     let [top, left] = [top + window.rows.start as i64, left + window.cols.start as i64];
-    let mut whole = Raster::bare(rows, cols, open::zeros(&first, rows * cols)?);
+    let values = open::zeros(&first, rows * cols)?;
+    let bare = Raster::bare(rows, cols, values);
+    let mut whole = Raster { data_type, nodata, scale, unit_m, ..bare };
     let mut sums = Sums::default();
     // Whether a file holds the grid point, and whether none has its height.
     let mut is_held = vec![false; rows * cols];

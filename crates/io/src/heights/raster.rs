@@ -5,12 +5,37 @@ use crate::georeference::Georeference;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
+/// How a file stores its heights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredHeights {
+    /// `int16`, `float32` and so on; `text` for an `.asc`.
+    pub data_type: String,
+    /// The file's value for no data, before scale and offset.
+    pub nodata: Option<f64>,
+    /// A height is the value times the first, plus the second, in the file's unit.
+    pub scale: [f64; 2],
+    /// Metres in the file's unit of height; `None` where the file states none that is known, and the unit is read as a metre.
+    pub unit_m: Option<f64>,
+}
+
+/// The name of a type of values: `kind` is that of NumPy, `i`, `u` or `f`.
+pub(crate) fn type_name(kind: u8, bits: usize) -> String {
+    let name = match kind {
+        b'i' => "int",
+        b'u' => "uint",
+        _ => "float",
+    };
+    format!("{name}{bits}")
+}
+
 /// A decoded grid, before interpretation.
 pub(crate) struct Raster {
     pub rows: usize,
     pub cols: usize,
     /// Row-major, row 0 in the north, in the file's unit.
     pub values: Vec<f64>,
+    /// The type of the file's values.
+    pub data_type: String,
     /// Whether the file holds 16- or 32-bit floats. A no-data value printed in decimal is then
     /// rounded to that type before it is compared.
     pub single: bool,
@@ -43,6 +68,7 @@ impl Raster {
             rows,
             cols,
             values,
+            data_type: String::new(),
             single: false,
             cell: Cell::Unknown,
             unit_m: None,
@@ -60,9 +86,15 @@ impl Raster {
 }
 
 impl Raster {
+    /// How the file stores the heights.
+    pub fn stored(&self) -> StoredHeights {
+        let Self { nodata, scale, unit_m, .. } = *self;
+        StoredHeights { data_type: self.data_type.clone(), nodata, scale, unit_m }
+    }
+
     /// Marks voids and converts heights to metres, with notes on what was converted and warnings of what may be wrong.
     pub fn interpret(&mut self, options: &HeightOptions) {
-        let own = self.nodata.take();
+        let own = self.nodata;
         if let Some(nodata) = options.nodata.or(own) {
             let single = self.single;
             let is_marked = |value: f64, nodata: f64| {

@@ -3,7 +3,7 @@
 use crate::heights::mosaic::{Choose, Window, size_of_part};
 use crate::heights::raw::Raw;
 use crate::heights::sidecar::Sidecar;
-use crate::heights::{Raster, geotiff, lzw};
+use crate::heights::{Raster, geotiff, lzw, type_name};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
@@ -233,6 +233,18 @@ impl<'a> Image<'a> {
         Ok((planes, single))
     }
 
+    /// The name of the type of its values; unsigned integers are TIFF's default.
+    fn type_name(&mut self) -> String {
+        let formats: Option<Vec<u64>> =
+            self.tiff.find_tag_unsigned_vec(Tag::SampleFormat).ok().flatten();
+        let kind = match formats.and_then(|all| all.first().copied()) {
+            Some(2) => b'i',
+            Some(3) => b'f',
+            _ => b'u',
+        };
+        type_name(kind, self.bits.into())
+    }
+
     /// The index of the band that holds the heights, and a note where it was not requested.
     fn band(&mut self, wanted: Option<u32>) -> Result<(usize, Option<String>)> {
         let bands = self.bands;
@@ -283,6 +295,7 @@ pub(super) fn heights(
     let empty = geo.nodata.unwrap_or(0.0);
     let is_8_bit = image.bits == 8;
     let mut raster = Raster {
+        data_type: image.type_name(),
         cell: geo.cell,
         unit_m: geo.unit_m,
         unit_warning: geo.unit_warning,
