@@ -89,7 +89,9 @@ fn environment_files() -> Vec<(&'static str, Vec<u8>)> {
 
 #[test]
 fn mutated_heights_never_panic() {
-    for (i, (name, bytes)) in height_files().into_iter().enumerate() {
+    // Of a TIFF without the bytes of a tile, too.
+    let sparse = ("a.tif", sparse_tiff(16, [2, 1], &[None, Some(7.0)], Some("-9999")));
+    for (i, (name, bytes)) in height_files().into_iter().chain([sparse]).enumerate() {
         let mut random = Random(0x5eed + i as u64);
         for _ in 0..ROUNDS {
             let bytes = mutate(&bytes, &mut random);

@@ -134,6 +134,65 @@ where
     bytes.into_inner()
 }
 
+/// A TIFF of f32 in uncompressed square tiles of one height each. `None` is a tile without bytes, as GDAL's SPARSE_OK
+/// leaves it out.
+pub fn sparse_tiff(
+    side: u32,
+    [across, down]: [u32; 2],
+    tiles: &[Option<f32>],
+    nodata: Option<&str>,
+) -> Vec<u8> {
+    assert_eq!(tiles.len(), (across * down) as usize);
+    let (short, long, text) = (3_u16, 4_u16, 2_u16);
+    // The place of the directory comes last.
+    let mut bytes = b"II*\0\0\0\0\0".to_vec();
+    let (mut offsets, mut lengths) = (Vec::new(), Vec::new());
+    for tile in tiles {
+        let values = tile
+            .map_or_else(Vec::new, |height| height.to_le_bytes().repeat((side * side) as usize));
+        let offset = if values.is_empty() { 0 } else { bytes.len() as u32 };
+        offsets.extend(offset.to_le_bytes());
+        lengths.extend((values.len() as u32).to_le_bytes());
+        bytes.extend(values);
+    }
+    let longs = |value: u32| value.to_le_bytes().to_vec();
+    let shorts = |value: u16| value.to_le_bytes().to_vec();
+    let mut entries = vec![
+        (256_u16, long, longs(side * across)),
+        (257, long, longs(side * down)),
+        (258, short, shorts(32)),
+        (259, short, shorts(1)),
+        (262, short, shorts(1)),
+        (277, short, shorts(1)),
+        (322, long, longs(side)),
+        (323, long, longs(side)),
+        (324, long, offsets),
+        (325, long, lengths),
+        (339, short, shorts(3)),
+    ];
+    entries.extend(nodata.map(|nodata| (42113, text, format!("{nodata}\0").into_bytes())));
+    let mut directory = (entries.len() as u16).to_le_bytes().to_vec();
+    for (tag, kind, mut value) in entries {
+        let size = [1, 2, 4][[text, short, long].iter().position(|k| *k == kind).unwrap()];
+        let count = (value.len() / size) as u32;
+        if value.len() > 4 {
+            let at = bytes.len() as u32;
+            bytes.extend(value);
+            value = longs(at);
+        }
+        value.resize(4, 0);
+        directory.extend(tag.to_le_bytes());
+        directory.extend(kind.to_le_bytes());
+        directory.extend(count.to_le_bytes());
+        directory.extend(value);
+    }
+    directory.extend([0; 4]);
+    let at = bytes.len() as u32;
+    bytes[4..8].copy_from_slice(&at.to_le_bytes());
+    bytes.extend(directory);
+    bytes
+}
+
 /// A plain GeoTIFF of [`HEIGHTS`] in degrees.
 pub fn geotiff() -> Vec<u8> {
     tiff::<tiff::encoder::colortype::GrayI16>(

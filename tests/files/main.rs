@@ -8,6 +8,7 @@ mod light;
 mod malformed;
 mod notes;
 mod real;
+mod sparse;
 mod visible;
 mod write;
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use crate::formats::{HEIGHTS, Tag, colour, exr, png, tiff};
+use crate::formats::{HEIGHTS, Tag, colour, exr, png, sparse_tiff, tiff};
 use crate::{Folder, refused, succeeded};
 use ::exr::prelude::FlatSamples;
 use ::tiff::encoder::{Compression, colortype};
@@ -226,6 +226,8 @@ fn info_states_how_a_file_stores_heights() {
     let plain = Compression::Uncompressed;
     folder.write("u8.tif", &tiff::<colortype::Gray8>(4, 3, &unsigned, plain, none, &[]));
     folder.write("u8.png", &png(4, 3, colour::GREY, 8, &[], &unsigned));
+    let sparse = sparse_tiff(16, [2, 2], &[None, Some(1.0), Some(2.0), Some(3.0)], Some("-9999"));
+    folder.write("sparse.tif", &sparse);
     let whole = FlatSamples::U32(HEIGHTS.map(|h| h as u32).to_vec());
     folder.write("whole.exr", &exr(4, 3, &[("Z", whole)]));
     let null = Value::Null;
@@ -252,6 +254,14 @@ fn info_states_how_a_file_stores_heights() {
             [1.0, 0.0],
             json!(1.0),
             "int16, no data -32768, unit 1 m",
+        ),
+        (
+            "sparse.tif",
+            "float32",
+            json!(-9999.0),
+            [1.0, 0.0],
+            null.clone(),
+            "float32, no data -9999, unit not stated",
         ),
         ("a.asc", "text", json!(-9999.0), [1.0, 0.0], null, "text, no data -9999, unit not stated"),
         (

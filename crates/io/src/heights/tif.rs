@@ -118,7 +118,7 @@ impl<'a> Image<'a> {
     }
 
     /// The values of some bands in the window, and whether they are 16- or 32-bit floats. Strips and tiles that the
-    /// file leaves out (GDAL's SPARSE_OK) hold `empty`.
+    /// file leaves out have no bytes and hold `empty` (GDAL's SPARSE_OK: gdal.org/drivers/raster/gtiff.html, "Sparse files").
     pub fn read<T: Copy + Default>(
         self,
         bands: Range<usize>,
@@ -130,7 +130,6 @@ impl<'a> Image<'a> {
         size_of_part(path, "header", [lines, columns])?;
         let claimed = (lines * columns) as u64 * self.texel_bytes;
         let held = self.bytes.len();
-        let fits = open::plausible(path, "header", claimed, held, ratio(self.method));
         let wrong = |found: String| {
             Error::file(path, "image data", found, "values as the header describes")
         };
@@ -143,17 +142,19 @@ impl<'a> Image<'a> {
         let mut words = |tag: Tag| -> Result<Vec<u64>> {
             Ok(tiff.find_tag_unsigned_vec(tag).map_err(decoded)?.unwrap_or_default())
         };
-        // A whole file may be short where GDAL left out tiles, which have no bytes.
-        let is_cut = fits.is_err()
-            && self.method == 1
-            && words(lengths).is_ok_and(|lengths| !lengths.contains(&0));
-        if is_cut {
-            let found = format!(
-                "a file that is cut off: {claimed} bytes of values in a file of {held} bytes"
-            );
-            return Err(Error::file(path, "file size", found, "a whole TIFF"));
+        if let Err(error) = open::plausible(path, "header", claimed, held, ratio(self.method)) {
+            match words(lengths).map(|lengths| lengths.contains(&0)) {
+                // A whole file may be short where GDAL left out tiles, which have no bytes.
+                Ok(true) => open::plausible(path, "header", claimed, held, SPARSE_RATIO)?,
+                Ok(false) if self.method == 1 => {
+                    let found = format!(
+                        "a file that is cut off: {claimed} bytes of values in a file of {held} bytes"
+                    );
+                    return Err(Error::file(path, "file size", found, "a whole TIFF"));
+                }
+                _ => return Err(error),
+            }
         }
-        fits?;
         let (lengths, offsets) = (words(lengths)?, words(offsets)?);
         let format = words(Tag::SampleFormat)?.first().map_or(1, |f| *f as u16);
         let predictor = words(Tag::Predictor)?.first().map_or(1, |p| *p as u16);
@@ -382,6 +383,9 @@ impl Target<'_> {
         (0..self.inside * self.lines).for_each(|i| self.set(plane, i, value));
     }
 }
+
+/// The greatest expansion of a file without some of its strips or tiles: at least one in 1032 has bytes.
+const SPARSE_RATIO: u64 = open::DEFLATE_RATIO;
 
 /// The greatest expansion of a compression method, by its TIFF number.
 fn ratio(method: u16) -> u64 {
