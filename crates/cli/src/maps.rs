@@ -63,6 +63,18 @@ struct Values {
     png: [f32; 2],
 }
 
+impl Values {
+    /// A sentence on what 0 and 255 of a .png are, unless they are themselves.
+    fn png_range(&self) -> String {
+        let ([black, white], unit) = (self.png, self.unit);
+        if self.png == [0.0, 255.0] {
+            return String::new();
+        }
+        let blank = if unit.is_empty() { "" } else { " " };
+        format!(" 0 to 255 are values of {black} to {white}{blank}{unit}.")
+    }
+}
+
 /// Linear, not sRGB: a texture of engines, and a layer to multiply by.
 const SKY_VIEW_VALUES: Values = Values {
     name: SKY_VIEW,
@@ -70,6 +82,9 @@ const SKY_VIEW_VALUES: Values = Values {
     about: "cosine-weighted share of the hemisphere about the normal that no ground occludes",
     png: [0.0, 1.0],
 };
+
+/// The same map. The range of a .png is that of RVT's 8-bit sky-view factor (`svf_bytscl` in `rvt/default.py` of RVT_py).
+const SVF_VALUES: Values = Values { png: [0.6375, 1.0], ..SKY_VIEW_VALUES };
 
 /// As `gdaldem hillshade`: 1 to 255, and 0 is no data.
 const HILLSHADE_VALUES: Values = Values {
@@ -79,7 +94,7 @@ const HILLSHADE_VALUES: Values = Values {
     png: [0.0, 255.0],
 };
 
-/// The range of a .png is that of RVT's 8-bit openness.
+/// The range of a .png is that of RVT's 8-bit openness (`pos_opns_bytscl` in the same file).
 const OPENNESS_VALUES: Values = Values {
     name: "openness",
     unit: "deg",
@@ -189,7 +204,9 @@ impl<'a> Job<'a> {
             let time = device.map_or(String::new(), |(_, device)| {
                 format!(" in {:.1} ms of GPU time on {device}", setup::total_ns(times) / 1e6)
             });
-            crate::say!("Wrote {} ({cols}x{rows}){time}.", path.display());
+            let is_png = setup::extension(path) == "png";
+            let range = if is_png { values[0].png_range() } else { String::new() };
+            crate::say!("Wrote {} ({cols}x{rows}){time}.{range}", path.display());
         }
         Ok(Outcome::Done)
     }
@@ -263,8 +280,15 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
     (0..rows * cols).map(|i| (1.0 + 254.0 * cos(i).max(0.0)) as f32).collect()
 }
 
-/// `ao` and `svf`.
-pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
+pub fn ao(args: &SkyViewArgs) -> Result<Outcome> {
+    sky_view_map(args, &SKY_VIEW_VALUES)
+}
+
+pub fn svf(args: &SkyViewArgs) -> Result<Outcome> {
+    sky_view_map(args, &SVF_VALUES)
+}
+
+fn sky_view_map(args: &SkyViewArgs, values: &Values) -> Result<Outcome> {
     let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
     let job = Job::new(&args.map, &args.map.surface, setup::georeferenced)?;
     let border = setup::border(job.surface);
@@ -280,7 +304,7 @@ pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     let bar = setup::terminal::progress(args.map.global.quiet, "sky view");
     let (plane, times) = sky_view(&mut gpu, &job.field, plan)?;
     bar.finish_and_clear();
-    job.write(&SKY_VIEW_VALUES, plane, metadata, &times)
+    job.write(values, plane, metadata, &times)
 }
 
 pub fn openness(OpennessArgs { of: args, negative }: &OpennessArgs) -> Result<Outcome> {

@@ -7,7 +7,7 @@ use serde_json::json;
 use crate::files::gdal_inputs::{grid, tool};
 use crate::files::geotiff::{gdal_values, gdalinfo};
 use crate::needs_vulkan::{done, plane, write_field};
-use crate::{Folder, read, refused};
+use crate::{Folder, read, refused, succeeded};
 
 const SIDE: usize = 17;
 const SUN: [f64; 2] = [200.0, 30.0];
@@ -220,6 +220,39 @@ fn gpu_flat_ground_is_open() {
     write_field(&folder, 1, |_, _| 7.0);
     done(&folder, "openness field.npy -o o.npy");
     assert!(read(&folder.path("o.npy")).planes[0][0].is_nan());
+}
+
+/// A .png of `svf` has the range of RVT's 8-bit files, one of `ao` 0 to 1, whatever the values. Standard output states it.
+#[test]
+fn gpu_pictures_of_sky_view_have_fixed_ranges() {
+    let folder = Folder::new();
+    // A pit, which is darker than the range, in level ground beside a slope.
+    write_field(&folder, SIDE, |row, col| match [row, col] {
+        [8, 8] => 0.0,
+        _ => 40.0 - 0.5 * col.saturating_sub(12) as f32,
+    });
+    done(&folder, "svf field.npy -o o.npy");
+    let values = read(&folder.path("o.npy")).planes.concat();
+    let between = values.iter().filter(|v| (0.65..0.99).contains(*v)).count();
+    assert!(values[8 * SIDE + 8] < 0.5 && values[0] > 0.99 && between > 0, "{values:?}");
+    for (command, [black, white], said) in [
+        ("svf", [0.6375, 1.0], ". 0 to 255 are values of 0.6375 to 1.\n"),
+        ("ao", [0.0, 1.0], ". 0 to 255 are values of 0 to 1.\n"),
+    ] {
+        let run = succeeded(&folder, &format!("{command} field.npy -o o.png"));
+        assert!(run.out.ends_with(said), "{}", run.out);
+        let codes = codes(&folder.path("o.png")).1;
+        for (i, (code, value)) in codes.iter().zip(&values).enumerate() {
+            let share: f64 = (f64::from(*value) - black) / (white - black);
+            let expected = 255.0 * share.clamp(0.0, 1.0);
+            // The share is rounded to f32, 255 times of it to a whole number.
+            assert!((f64::from(*code) - expected).abs() < 0.5 + 1e-3, "{command} {i}: {code}");
+        }
+    }
+    let run = succeeded(&folder, "openness field.npy -o o.png");
+    assert!(run.out.ends_with(". 0 to 255 are values of 60 to 95 deg.\n"), "{}", run.out);
+    let run = succeeded(&folder, "openness field.npy -o o.tif");
+    assert!(!run.out.contains("are values of"), "{}", run.out);
 }
 
 /// On a slope of angle a, (1 + cos a)/2 of the cosine-weighted hemisphere is above the horizontal and the slope.
