@@ -85,10 +85,14 @@ fn gpu_voids_are_nan_and_transparent() {
             }
         }
     }
-    done(&folder, "render v.asc -o v.png --sky 1 --exposure 1 --tint none");
-    let png = read(&folder.path("v.png"));
-    for (i, alpha) in plane(&png, "A").iter().enumerate() {
-        assert_eq!(*alpha, if i == VOID { 0.0 } else { 1.0 }, "texel {i}");
+    for command in
+        ["render --sky 1 --exposure 1 --tint none", "hillshade", "shadow", "ao", "svf", "openness"]
+    {
+        done(&folder, &format!("{command} v.asc -o v.png"));
+        let png = read(&folder.path("v.png"));
+        for (i, alpha) in plane(&png, "A").iter().enumerate() {
+            assert_eq!(*alpha, if i == VOID { 0.0 } else { 1.0 }, "{command}: texel {i}");
+        }
     }
     // Without a void there is no alpha.
     done(&folder, "render a.asc -o a.png --sky 1 --exposure 1 --tint none");
