@@ -107,14 +107,45 @@ impl<'a> Oracle<'a> {
     /// distance, row and column. `offer` returns the slope below which no further vertex matters.
     fn walk(
         &self,
-        [row, col]: [usize; 2],
-        [cols_per_t, rows_per_t]: [f64; 2],
+        place: [usize; 2],
+        direction: [f64; 2],
         mut offer: impl FnMut(f64, [f64; 3]) -> f64,
     ) {
+        let Some(ray) = self.ray(place, direction) else { return };
+        let cap_m = cap_m(self.field);
+        let mut least = f64::NEG_INFINITY;
+        for family in (0..3).filter_map(|index| ray.family(index)) {
+            let mut j = 0.0;
+            loop {
+                j += 1.0;
+                let crossing = ray.crossing(&family, j);
+                let Crossing { row, col, distance_m, .. } = crossing;
+                if self.border == Border::Periodic {
+                    if distance_m > cap_m {
+                        break;
+                    }
+                } else if !self.inside(row, col) {
+                    break;
+                }
+                if (self.highest_m - ray.own_m) / distance_m < least {
+                    break;
+                }
+                let slope = (self.height(&family, &crossing) - ray.own_m) / distance_m;
+                least = offer(slope, [distance_m, row, col]);
+            }
+        }
+    }
+
+    /// The ray from a grid point along (columns, rows), a vector of any length. None where that is no direction.
+    pub(super) fn ray(
+        &self,
+        [row, col]: [usize; 2],
+        [cols_per_t, rows_per_t]: [f64; 2],
+    ) -> Option<Ray> {
         let [cell_x, cell_y] = self.field.cell_m();
         let metres_per_t = (cols_per_t * cell_x).hypot(rows_per_t * cell_y);
         if !(metres_per_t > 0.0 && metres_per_t.is_finite()) {
-            return;
+            return None;
         }
         assert!(
             row < self.field.rows() && col < self.field.cols(),
@@ -123,51 +154,18 @@ impl<'a> Oracle<'a> {
             self.field.cols()
         );
         let (row, col) = (row as f64, col as f64);
-        let own_m = self.vertex(row, col);
-        let cap_m = cap_m(self.field);
+        Some(Ray { row, col, cols_per_t, rows_per_t, metres_per_t, own_m: self.vertex(row, col) })
+    }
+
+    /// Height of the surface at a crossing inside the field.
+    #[inline]
+    pub(super) fn height(&self, family: &Family, crossing: &Crossing) -> f64 {
         let (last_r, last_c) = self.last();
-        let mut least = f64::NEG_INFINITY;
-        // Columns, rows, diagonals: crossing j of a family lies at t = j / |its lines per t|.
-        // Multiplying before dividing keeps crossings of integer directions on their vertices.
-        for (family, lines_per_t) in
-            [cols_per_t, rows_per_t, rows_per_t - cols_per_t].into_iter().enumerate()
-        {
-            if lines_per_t == 0.0 {
-                continue;
-            }
-            let per_t = lines_per_t.abs();
-            let metres_per_line = metres_per_t / per_t;
-            let mut j = 0.0;
-            loop {
-                j += 1.0;
-                let signed = j * lines_per_t.signum();
-                // A diagonal is the line row = column + k, k whole: its rows follow from its columns.
-                let k = row - col + signed;
-                let (r, c) = match family {
-                    0 => (row + rows_per_t * j / per_t, col + signed),
-                    1 => (row + signed, col + cols_per_t * j / per_t),
-                    _ => (col + cols_per_t * j / per_t + k, col + cols_per_t * j / per_t),
-                };
-                let distance_m = j * metres_per_line;
-                if self.border == Border::Periodic {
-                    if distance_m > cap_m {
-                        break;
-                    }
-                } else if !self.inside(r, c) {
-                    break;
-                }
-                if (self.highest_m - own_m) / distance_m < least {
-                    break;
-                }
-                let h = match family {
-                    0 => self.between(r, 0.0, last_r, |r| self.vertex(r, c)),
-                    1 => self.between(c, 0.0, last_c, |c| self.vertex(r, c)),
-                    _ => self.between(c, (-k).max(0.0), last_c.min(last_r - k), |c| {
-                        self.vertex(c + k, c)
-                    }),
-                };
-                least = offer((h - own_m) / distance_m, [distance_m, r, c]);
-            }
+        let Crossing { row: r, col: c, diagonal: k, .. } = *crossing;
+        match family.index {
+            0 => self.between(r, 0.0, last_r, |r| self.vertex(r, c)),
+            1 => self.between(c, 0.0, last_c, |c| self.vertex(r, c)),
+            _ => self.between(c, (-k).max(0.0), last_c.min(last_r - k), |c| self.vertex(c + k, c)),
         }
     }
 
@@ -189,7 +187,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// The last row and column as coordinates.
-    fn last(&self) -> (f64, f64) {
+    pub(super) fn last(&self) -> (f64, f64) {
         ((self.field.rows() - 1) as f64, (self.field.cols() - 1) as f64)
     }
 
@@ -198,7 +196,7 @@ impl<'a> Oracle<'a> {
     /// A crossing is computed with two roundings of its coordinate; four units in the last place of the field's size
     /// keep a ray aimed exactly at a corner or along the edge inside.
     #[inline]
-    fn inside(&self, row: f64, col: f64) -> bool {
+    pub(super) fn inside(&self, row: f64, col: f64) -> bool {
         let (last_r, last_c) = self.last();
         let hair = 4.0 * f64::EPSILON * (last_r + last_c);
         (-hair..=last_r + hair).contains(&row) && (-hair..=last_c + hair).contains(&col)
@@ -230,6 +228,67 @@ impl<'a> Oracle<'a> {
         let share = x - whole;
         let here = height(whole);
         if share == 0.0 { here } else { here + share * (height(whole + 1.0) - here) }
+    }
+}
+
+/// A straight line over the field from a grid point.
+pub(super) struct Ray {
+    pub(super) row: f64,
+    pub(super) col: f64,
+    pub(super) cols_per_t: f64,
+    pub(super) rows_per_t: f64,
+    pub(super) metres_per_t: f64,
+    /// Height of the grid point.
+    pub(super) own_m: f64,
+}
+
+/// The lines of one kind that a ray crosses: crossing j, from 1 on, lies at t = j / `per_t`.
+pub(super) struct Family {
+    /// 0 for columns, 1 for rows, 2 for diagonals.
+    index: usize,
+    /// Lines crossed per t, and whether their numbers rise (1) or fall (-1).
+    pub(super) per_t: f64,
+    sign: f64,
+    metres_per_line: f64,
+}
+
+/// Where a ray crosses a line.
+#[derive(Clone, Copy)]
+pub(super) struct Crossing {
+    pub(super) row: f64,
+    pub(super) col: f64,
+    /// A whole number k: on a diagonal, row = column + k.
+    diagonal: f64,
+    pub(super) distance_m: f64,
+}
+
+impl Ray {
+    /// None where the ray crosses no line of the family.
+    #[inline]
+    pub(super) fn family(&self, index: usize) -> Option<Family> {
+        let Self { cols_per_t, rows_per_t, .. } = *self;
+        let lines_per_t = [cols_per_t, rows_per_t, rows_per_t - cols_per_t][index];
+        let per_t = lines_per_t.abs();
+        let (sign, metres_per_line) = (lines_per_t.signum(), self.metres_per_t / per_t);
+        (lines_per_t != 0.0).then_some(Family { index, per_t, sign, metres_per_line })
+    }
+
+    /// Crossing j. Multiplying before dividing keeps crossings of integer directions on their vertices.
+    #[inline]
+    pub(super) fn crossing(&self, family: &Family, j: f64) -> Crossing {
+        let Self { row, col, cols_per_t, rows_per_t, .. } = *self;
+        let signed = j * family.sign;
+        // A diagonal is the line row = column + k, k whole: its rows follow from its columns.
+        let k = row - col + signed;
+        let (r, c) = match family.index {
+            0 => (row + rows_per_t * j / family.per_t, col + signed),
+            1 => (row + signed, col + cols_per_t * j / family.per_t),
+            _ => {
+                let c = col + cols_per_t * j / family.per_t;
+                (c + k, c)
+            }
+        };
+        Crossing { row: r, col: c, diagonal: k, distance_m: j * family.metres_per_line }
     }
 }
 
@@ -293,7 +352,7 @@ pub fn elevation_of(border: Border, horizon: Option<Horizon>) -> f64 {
 }
 
 /// The same of a slope, -∞ where nothing is hit: its arc tangent is -π/2.
-fn elevation_of_slope(border: Border, slope: f64) -> f64 {
+pub(super) fn elevation_of_slope(border: Border, slope: f64) -> f64 {
     let met = slope.atan();
     match border {
         Border::Open => met,
