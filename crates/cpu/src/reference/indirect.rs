@@ -336,7 +336,7 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
 /// alone misses this by less the more azimuths and the gentler the slope. Uniform incident radiance is preserved, and
 /// energy is not gained.
 fn gather(site: Site, unknowns: Unknowns, azimuths: usize, panels: usize) -> Vec<Visibility> {
-    let Site { oracle, place: [row, col], receivers } = site;
+    let Site { oracle, place: [row, col], receivers, .. } = site;
     let mut dense = vec![vec![0.0; unknowns.count()]; receivers.len()];
     let mut all = vec![Visibility::default(); receivers.len()];
     let mut totals = vec![0.0; receivers.len()];

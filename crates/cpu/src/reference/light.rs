@@ -7,6 +7,7 @@
 //! A cos²ω + B sin ω cos ω: see [`slice()`]. A Phong lobe has its own: see [`Receiver`].
 
 use crate::Rgb;
+use crate::maxima::Maxima;
 use crate::mirror_map::mirrored;
 use crate::oracle::Oracle;
 use crate::phong_integral::PhongIntegral;
@@ -191,12 +192,27 @@ pub struct Site<'a> {
     pub(crate) oracle: &'a Oracle<'a>,
     pub(crate) place: [usize; 2],
     pub(crate) receivers: &'a [Receiver],
+    maxima: Option<&'a Maxima>,
 }
 
 impl<'a> Site<'a> {
     /// At a row and column.
     pub fn of(oracle: &'a Oracle, place: [usize; 2], receivers: &'a [Receiver]) -> Self {
-        Self { oracle, place, receivers }
+        Self { oracle, place, receivers, maxima: None }
+    }
+
+    /// The same, with faster horizons of equal bits, where there are maxima of the oracle's field.
+    pub(crate) fn skipping(self, maxima: Option<&'a Maxima>) -> Self {
+        Self { maxima, ..self }
+    }
+
+    /// [`Oracle::elevation_rad`] along an azimuth.
+    pub(crate) fn horizon_rad(&self, azimuth_rad: f64) -> f64 {
+        let [row, col] = self.place;
+        match self.maxima {
+            Some(maxima) => maxima.elevation_rad(self.oracle, row, col, azimuth_rad),
+            None => self.oracle.elevation_rad(row, col, azimuth_rad),
+        }
     }
 
     /// π times each receiver's light of radiance 1, of azimuths with their weights and the light's elevations there:
@@ -213,7 +229,7 @@ impl<'a> Site<'a> {
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.receivers.len()];
         for (azimuth, weight, elevations) in strips {
-            let horizon = self.oracle.elevation_rad(self.place[0], self.place[1], azimuth);
+            let horizon = self.horizon_rad(azimuth);
             for (i, (receiver, sum)) in self.receivers.iter().zip(&mut sums).enumerate() {
                 *sum += weight * light(i, &receiver.slice(azimuth).above(horizon), elevations);
             }
@@ -268,7 +284,7 @@ impl<'a> Site<'a> {
         for strip in 0..strips {
             // Columns run clockwise from azimuth π; the rotation is counter-clockwise.
             let azimuth = PI - TAU * (strip as f64 + 0.5) / strips as f64 + env.rotation_rad();
-            let horizon = self.oracle.elevation_rad(self.place[0], self.place[1], azimuth);
+            let horizon = self.horizon_rad(azimuth);
             for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
                 let lit = receiver.slice(azimuth).above(horizon);
                 for texel_row in 0..height {

@@ -2,11 +2,12 @@
 
 use crate::Rgb;
 use crate::light::{self, ENVIRONMENT_STRIPS, Receiver, Site};
+use crate::maxima::Maxima;
 use crate::oracle::Oracle;
 use crate::phong_integral::PhongIntegral;
 use crate::sphere::strips_of;
 use glam::DVec3;
-use ridgelight::scene::{Environment, KeyLight, NearLight, Scene, Specular};
+use ridgelight::scene::{Border, Environment, KeyLight, NearLight, Scene, Specular};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ pub struct Lit<'a> {
     scene: &'a Scene,
     eye_m: Option<DVec3>,
     oracle: Oracle<'a>,
+    /// Of the oracle's field, where that is not repeated. Clones share them.
+    maxima: Option<Arc<Maxima>>,
     columns: Option<Columns<'a>>,
     /// The table of the Phong lobe, where all grid points share one lobe.
     phong: Option<PhongIntegral>,
@@ -32,16 +35,19 @@ pub struct Lit<'a> {
 }
 
 impl<'a> Lit<'a> {
-    /// Reads all heights and texels once.
+    /// Reads all heights a few times and all texels once.
     pub fn of(scene: &'a Scene) -> Self {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
+        let is_repeated = scene.surface.border == Border::Periodic;
+        let maxima = (!is_repeated).then(|| Arc::new(Maxima::of(&oracle)));
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
         let columns = scene.lights.environment.as_ref().map(|e| Columns::of(e, rows(e)));
         let phong = match &scene.surface.specular {
             Some(Specular::Constant(phong)) => Some(PhongIntegral::of(phong.exponent.into())),
             Some(Specular::Map(_)) | None => None,
         };
-        Self { scene, eye_m: None, oracle, columns, phong, azimuths: AZIMUTHS, strips: STRIPS }
+        let (azimuths, strips) = (AZIMUTHS, STRIPS);
+        Self { scene, eye_m: None, oracle, maxima, columns, phong, azimuths, strips }
     }
 
     /// Specular viewed from [`Picture::eye_m`](ridgelight::plan::Picture::eye_m).
@@ -107,7 +113,7 @@ impl<'a> Lit<'a> {
         }
         let mut all = [0.0; 3];
         let (receivers, scales): (Vec<_>, Vec<_>) = receivers.into_iter().unzip();
-        let site = Site::of(oracle, place, &receivers);
+        let site = Site::of(oracle, place, &receivers).skipping(self.maxima.as_deref());
         let mut add = |light: Vec<Rgb>| {
             for (light, scale) in light.iter().zip(&scales) {
                 (0..3).for_each(|c| all[c] += light[c] * scale[c]);
@@ -223,7 +229,6 @@ impl<'a> Columns<'a> {
     /// it, clipped at the horizon exactly. A lobe has its own weight in each texel.
     fn light(&self, site: Site<'_>, integrals: &[Option<PhongIntegral>]) -> Vec<Rgb> {
         let (width, height) = (self.environment.width(), self.environment.height());
-        let [row, col] = site.place;
         // Upper ends of the rows, and the lower end of the last.
         let elevations: Vec<f64> =
             (0..=self.rows).map(|row| FRAC_PI_2 - PI * row as f64 / height as f64).collect();
@@ -236,7 +241,7 @@ impl<'a> Columns<'a> {
             for part in 0..parts {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
-                let horizon = site.oracle.elevation_rad(row, col, azimuth);
+                let horizon = site.horizon_rad(azimuth);
                 let receivers = site.receivers.iter().zip(integrals);
                 for ((receiver, integral), all) in receivers.zip(&mut all) {
                     let lit = receiver.slice(azimuth).above(horizon);
@@ -275,9 +280,7 @@ impl<'a> Columns<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::{
-        Albedo, Border, HeightField, Lights, PhongSpecular, Specular, Sun, Surface,
-    };
+    use ridgelight::scene::{Albedo, HeightField, Lights, PhongSpecular, Specular, Sun, Surface};
 
     const SIDE: usize = 9;
 
@@ -327,6 +330,39 @@ mod tests {
         }
     }
 
+    /// Light that reads horizons keeps its bits: sky, environment, sun and key light. An oracle that knows no highest point
+    /// visits every crossing.
+    #[test]
+    fn skipping_surface_changes_no_light() {
+        let texels = (0..16 * 8).map(|i| [(i % 7) as f32, 2.0, (i % 3) as f32]).collect();
+        let environment = Environment::new(16, 8, texels, 0.4).unwrap();
+        for border in [Border::Plane, Border::Open, Border::Periodic] {
+            let mut scene = scene(border, environment.clone());
+            scene.lights.sky = Some([1.0, 2.0, 3.0]);
+            scene.lights.suns = vec![Sun {
+                azimuth_rad: 0.7,
+                elevation_rad: 0.4,
+                diameter_rad: 0.1,
+                irradiance: [2.0; 3],
+            }];
+            scene.lights.keys = vec![KeyLight {
+                azimuth_rad: 2.0,
+                width_rad: 0.8,
+                elevations_rad: [0.1, 0.6],
+                radiance: [3.0; 3],
+            }];
+            let scene = specular(scene, PhongSpecular { exponent: 20.0, scale: 0.5 });
+            let lit = Lit::of(&scene);
+            assert_eq!(lit.maxima.is_some(), border != Border::Periodic);
+            let oracle = Oracle::one_ray(&scene.field, border);
+            let plain = Lit { maxima: None, oracle, ..lit.clone() };
+            for place in [0, 13, 40, 44, 70, 80] {
+                let (row, col) = (place / SIDE, place % SIDE);
+                assert_eq!(lit.at(row, col), plain.at(row, col), "{border:?} {place}");
+            }
+        }
+    }
+
     /// 36 bytes per texel are 1.2 GB for 8192 × 4096.
     #[test]
     fn clones_and_halves_share_texels() {
@@ -336,6 +372,9 @@ mod tests {
         let table = |lit: &Lit| Arc::as_ptr(&lit.columns.as_ref().unwrap().table);
         assert_eq!(table(&lit.clone()), table(&lit));
         assert_eq!(table(&lit.clone().halved()), table(&lit));
+        let maxima = |lit: &Lit| lit.maxima.as_ref().map(Arc::as_ptr);
+        assert_eq!(maxima(&lit.clone().halved()), maxima(&lit));
+        assert!(maxima(&lit).is_some());
     }
 
     const DULL: PhongSpecular = PhongSpecular { exponent: 20.0, scale: 0.0 };

@@ -4,6 +4,7 @@
 pub mod indirect;
 pub mod light;
 pub mod lit;
+pub(crate) mod maxima;
 pub mod oracle;
 pub mod path_trace;
 pub(crate) mod phong_integral;

@@ -17,7 +17,7 @@ impl Site<'_> {
     /// `strips` azimuths: over the sphere's width, spaced so that the disc's square root is smooth, or over the circle
     /// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
     pub fn sphere(&self, sphere: &SphereLight, strips: usize) -> Vec<f64> {
-        let Self { oracle, place: [row, col], receivers } = *self;
+        let Self { oracle, place: [row, col], receivers, .. } = *self;
         let [east, north] = towards_m(oracle.field(), row, col, sphere);
         let up = sphere.position_m[2] - oracle.field().base_m();
         let up = up - oracle.vertex(row as f64, col as f64);
