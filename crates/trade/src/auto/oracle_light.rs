@@ -202,6 +202,7 @@ impl<'a> OracleLight<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::auto::probes::Probes;
     use ridgelight::scene::{HeightField, Lights, Surface};
 
     fn scene() -> Scene {
@@ -252,6 +253,27 @@ mod tests {
             let wanted: Vec<_> = all.iter().map(|i| at(*i)).collect();
             assert_eq!(light.light(&all, Rays::All), wanted);
         });
+    }
+
+    /// With their weights all texels of probes are requested, without them the uniform half. Where all texels of the field are
+    /// wanted, these are all.
+    #[test]
+    fn probes_take_the_texels_that_were_requested() {
+        let scene = scene();
+        let lit = Lit::of(&scene);
+        let unsure: Vec<f64> = (0..35).map(|i| f64::from(i % 5)).collect();
+        for (wanted, given, are_all) in
+            [(20, Some(unsure.as_slice()), true), (20, None, false), (40, None, true)]
+        {
+            OracleLight::with(&lit, |light| {
+                Probes::request(light, wanted, 3, given).unwrap();
+                let requested = light.threads.lock().light.len();
+                let probes = Probes::by(light, wanted, 3, &unsure).unwrap();
+                assert_eq!(probes.count(), wanted.min(35));
+                let taken = light.threads.lock().light.len();
+                assert_eq!(taken == requested, are_all, "{wanted}: {requested} of {taken}");
+            });
+        }
     }
 
     /// A panic of the oracle, here beyond the field, reaches the caller; the threads end.

@@ -70,6 +70,11 @@ fn known(scene: &Scene) -> Result<Vec<usize>> {
     Ok(known)
 }
 
+/// What [`picks`] takes, of known texels.
+fn weights(known: &[usize], unsure: &[f64]) -> Vec<f64> {
+    known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect()
+}
+
 /// A mean square with its bound, and the mean of the ground truth.
 #[derive(Clone, Copy)]
 struct Square {
@@ -120,9 +125,7 @@ impl Probes {
         unsure: &[f64],
     ) -> Result<Self> {
         let known = known(oracle.scene())?;
-        let weights: Vec<f64> =
-            known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
-        let (picks, factors) = picks(&weights, wanted, seed);
+        let (picks, factors) = picks(&weights(&known, unsure), wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
         let light = oracle.light(&places, Rays::All);
         let stride = places.len().div_ceil(SELF_PROBES);
@@ -138,13 +141,22 @@ impl Probes {
         Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, own_rms })
     }
 
-    /// Starts to compute the light of those texels of [`by`](Self::by) that do not depend on `unsure`.
+    /// Starts to compute the light of the texels of [`by`](Self::by), or where `unsure` is not known yet of those that do not
+    /// depend on it.
     ///
     /// # Errors
     /// Those of [`by`](Self::by).
-    pub(super) fn request(oracle: &OracleLight<'_>, wanted: usize, seed: u64) -> Result<()> {
+    pub(super) fn request(
+        oracle: &OracleLight<'_>,
+        wanted: usize,
+        seed: u64,
+        unsure: Option<&[f64]>,
+    ) -> Result<()> {
         let known = known(oracle.scene())?;
-        let picks = even_picks(known.len(), wanted, seed);
+        let picks = match unsure {
+            Some(unsure) => picks(&weights(&known, unsure), wanted, seed).0,
+            None => even_picks(known.len(), wanted, seed),
+        };
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
         oracle.request(&places, Rays::All);
         // The first texels are the same, so every `stride`-th is, too.

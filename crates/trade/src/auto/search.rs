@@ -130,13 +130,21 @@ struct Judge<'a, 't> {
     oracle: &'a OracleLight<'a>,
     bounced: Option<Bounced<'t>>,
     batches: u32,
-    /// Where probes concentrate, the affordable number, and the next seed.
+    /// Where probes concentrate, the affordable number, the number of texels without void, and the next seed.
     unsure: Vec<f64>,
     affordable: usize,
+    texels: usize,
     seed: u64,
     probes: Probes,
     pictures: Vec<Option<Vec<Vec<f32>>>>,
     control: usize,
+}
+
+/// Texels that confirm the next choice, by number and seed.
+#[derive(Clone, Copy)]
+struct Requested {
+    count: usize,
+    seed: u64,
 }
 
 /// Number of the first probes. Bounced light begins with all that are affordable, as its number of paths is chosen for them.
@@ -153,6 +161,8 @@ impl<'a, 't> Judge<'a, 't> {
         goal: Goal,
     ) -> Result<Self> {
         let scene = oracle.scene();
+        let texels = scene.field.rows() * scene.field.cols()
+            - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
         let first = first_count(affordable, bounced.is_some());
         let probes = Probes::by(oracle, first, seed, &unsure)?;
         let direct = probes.clone();
@@ -162,6 +172,7 @@ impl<'a, 't> Judge<'a, 't> {
             batches: FIRST_BATCHES,
             unsure,
             affordable,
+            texels,
             seed,
             probes,
             pictures: vec![],
@@ -172,9 +183,7 @@ impl<'a, 't> Judge<'a, 't> {
             Goal::MaxError(most) => (NOISE_TARGET * most, most),
             Goal::MaxCost(_) => (TIMED_NOISE_TARGET, 0.0),
         };
-        let known = scene.field.rows() * scene.field.cols()
-            - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-        let judging = known.min(CONFIRMING_PROBES * judge.probes.count());
+        let judging = texels.min(CONFIRMING_PROBES * judge.probes.count());
         let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
             judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
@@ -208,10 +217,36 @@ impl<'a, 't> Judge<'a, 't> {
         Ok(judge)
     }
 
+    fn new_seed(&mut self) -> u64 {
+        self.seed = self.seed.wrapping_add(1 << 32);
+        self.seed
+    }
+
     /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
-        self.seed = self.seed.wrapping_add(1 << 32);
-        let probes = Probes::by(self.oracle, wanted, self.seed, &self.unsure)?;
+        let seed = self.new_seed();
+        let probes = Probes::by(self.oracle, wanted, seed, &self.unsure)?;
+        self.traced(probes)
+    }
+
+    /// Starts to compute the light of texels that confirm the next choice, whichever it is: of these many, as more may be wanted.
+    fn request(&mut self, count: usize) -> Result<Requested> {
+        let seed = self.new_seed();
+        Probes::request(self.oracle, count, seed, Some(self.unsure.as_slice()))?;
+        Ok(Requested { count, seed })
+    }
+
+    /// Probes that confirm a choice: the requested ones, and others of a new seed where more are wanted; or all texels.
+    ///
+    /// The two sets are independent, and each probe's factor is that of its own set. The mean over each set is unbiased, so
+    /// that over both is.
+    fn confirming(&mut self, requested: Requested, wanted: usize) -> Result<Probes> {
+        let first = if wanted >= self.texels { wanted } else { requested.count };
+        let mut probes = Probes::by(self.oracle, first, requested.seed, &self.unsure)?;
+        if wanted > first {
+            let seed = self.new_seed();
+            probes.extend(&Probes::by(self.oracle, wanted - first, seed, &self.unsure)?);
+        }
         self.traced(probes)
     }
 
@@ -316,7 +351,7 @@ fn choose_by(
     mut draw: impl FnMut(&Quality, &OracleThreads) -> Result<Drawn>,
 ) -> Result<Chosen> {
     // Half of the probes do not depend on the pictures.
-    Probes::request(oracle, first_count(probes, bounced.is_some()), seed)?;
+    Probes::request(oracle, first_count(probes, bounced.is_some()), seed, None)?;
     let mut draw = |quality: &Quality| draw(quality, oracle.threads());
     let scene = oracle.scene();
     let count = bounced.as_ref().map_or(0, |b| b.count);
@@ -357,7 +392,10 @@ fn choose_by(
     for (quality, drawn) in pilots {
         judge.take(&mut chooser, &quality, drawn)?;
     }
+    let most = CONFIRMING_PROBES * probes;
+    let fewest = if count > 0 { most } else { FEWEST_CONFIRMING.min(most) };
     for attempt in 1..=CONFIRMATIONS {
+        let requested = judge.request(fewest)?;
         let is_last = attempt == CONFIRMATIONS;
         while let Some(quality) = chooser.next().or_else(|| chooser.last_resort(is_last)) {
             match draw(&quality) {
@@ -373,7 +411,6 @@ fn choose_by(
         let Some(best) = best else { break };
         let (quality, measured) = (best.quality, best.measured);
         let Drawn { planes, passes } = draw(&quality)?;
-        let most = CONFIRMING_PROBES * probes;
         let (deviations, wanted) = match count {
             0 => {
                 let (deviations, known) = (Probes::FOUR_BOUNDS, judge.probes.count());
@@ -382,7 +419,7 @@ fn choose_by(
             }
             _ => (Probes::EIGHT_BOUNDS, most),
         };
-        let fresh = judge.fresh(wanted)?;
+        let fresh = judge.confirming(requested, wanted)?;
         let ns = passes.iter().map(|p| p.1).sum();
         let measured = fresh.error(&planes, judge.control(), deviations);
         let trial = chooser.confirmed(&quality, measured, ns).copied();
