@@ -206,12 +206,13 @@ impl<'a> Site<'a> {
         Self { maxima, ..self }
     }
 
-    /// [`Oracle::elevation_rad`] along an azimuth.
-    pub(crate) fn horizon_rad(&self, azimuth_rad: f64) -> f64 {
-        let [row, col] = self.place;
+    /// [`Oracle::elevation_rad`] along an azimuth. `first_cells` is 0 at first and then that of an azimuth nearby, which is
+    /// faster: see [`Maxima::elevation_rad`].
+    pub(crate) fn horizon_rad(&self, azimuth_rad: f64, first_cells: &mut usize) -> f64 {
+        let Self { oracle, place, .. } = *self;
         match self.maxima {
-            Some(maxima) => maxima.elevation_rad(self.oracle, row, col, azimuth_rad),
-            None => self.oracle.elevation_rad(row, col, azimuth_rad),
+            Some(maxima) => maxima.elevation_rad(oracle, place, azimuth_rad, first_cells),
+            None => oracle.elevation_rad(place[0], place[1], azimuth_rad),
         }
     }
 
@@ -228,8 +229,9 @@ impl<'a> Site<'a> {
         light: impl Fn(usize, &Slice, [f64; 2]) -> f64,
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.receivers.len()];
+        let mut first_cells = 0;
         for (azimuth, weight, elevations) in strips {
-            let horizon = self.horizon_rad(azimuth);
+            let horizon = self.horizon_rad(azimuth, &mut first_cells);
             for (i, (receiver, sum)) in self.receivers.iter().zip(&mut sums).enumerate() {
                 *sum += weight * light(i, &receiver.slice(azimuth).above(horizon), elevations);
             }
@@ -281,10 +283,11 @@ impl<'a> Site<'a> {
         let (width, height) = (env.width(), env.height());
         let strips = width * parts;
         let mut sums = vec![[0.0; 3]; self.receivers.len()];
+        let mut first_cells = 0;
         for strip in 0..strips {
             // Columns run clockwise from azimuth π; the rotation is counter-clockwise.
             let azimuth = PI - TAU * (strip as f64 + 0.5) / strips as f64 + env.rotation_rad();
-            let horizon = self.horizon_rad(azimuth);
+            let horizon = self.horizon_rad(azimuth, &mut first_cells);
             for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
                 let lit = receiver.slice(azimuth).above(horizon);
                 for texel_row in 0..height {

@@ -235,13 +235,14 @@ impl<'a> Columns<'a> {
         let row_of = |elevation: f64| (FRAC_PI_2 - elevation) / PI * height as f64;
         let ColumnTable { sums, texels } = &*self.table;
         let mut all = vec![[0.0; 3]; site.receivers.len()];
+        let mut first_cells = 0;
         for (column, &parts) in self.parts.iter().enumerate() {
             let texels = &texels[column * self.rows..][..self.rows];
             let weight = 2.0 / (width * parts) as f64;
             for part in 0..parts {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
-                let horizon = site.horizon_rad(azimuth);
+                let horizon = site.horizon_rad(azimuth, &mut first_cells);
                 let receivers = site.receivers.iter().zip(integrals);
                 for ((receiver, integral), all) in receivers.zip(&mut all) {
                     let lit = receiver.slice(azimuth).above(horizon);

@@ -3,7 +3,8 @@
 //! Over a piece of a ray no slope exceeds that of the highest grid point around the piece at the piece's nearer end, or at
 //! its farther end where that grid point lies below the ray's own. Blocks of heights hold the highest grid points. Pieces
 //! that might hold a better slope are visited crossing by crossing, as [`Oracle`] visits all: the best slope has the same
-//! bits.
+//! bits, whichever piece comes first. That is the piece with the horizon of the azimuth before, which is rarely far from the
+//! next one's: the best slope is then known almost at once.
 
 use super::oracle::{Family, Oracle, Ray, elevation_of_slope, grid_direction};
 
@@ -49,22 +50,24 @@ impl Maxima {
         Self { levels, slack_m: ROUNDING * f64::from(largest_m) }
     }
 
-    /// [`Oracle::elevation_rad`] of the same field.
+    /// [`Oracle::elevation_rad`] of the same field. `first_cells`, a multiple of 4, is where the piece begins that is visited
+    /// first; it becomes that of the horizon. Any value gives the same elevation.
     pub(crate) fn elevation_rad(
         &self,
         oracle: &Oracle,
-        row: usize,
-        col: usize,
+        [row, col]: [usize; 2],
         azimuth_rad: f64,
+        first_cells: &mut usize,
     ) -> f64 {
         let direction = grid_direction(oracle.field(), azimuth_rad);
         let ray = oracle.ray([row, col], direction);
-        let steepest = ray.map_or(f64::NEG_INFINITY, |ray| self.steepest(oracle, &ray).0);
+        let steepest =
+            ray.map_or(f64::NEG_INFINITY, |ray| self.steepest(oracle, &ray, first_cells).0);
         elevation_of_slope(oracle.border(), steepest)
     }
 
     /// The largest slope along a ray, -∞ without a crossing, and the number of crossings that were visited.
-    fn steepest(&self, oracle: &Oracle, ray: &Ray) -> (f64, usize) {
+    fn steepest(&self, oracle: &Oracle, ray: &Ray, first_cells: &mut usize) -> (f64, usize) {
         // In cells along the axis that the ray crosses faster.
         let cells_per_t = ray.cols_per_t.abs().max(ray.rows_per_t.abs());
         let (here, last) = ([ray.row, ray.col], <[f64; 2]>::from(oracle.last()));
@@ -74,6 +77,27 @@ impl Maxima {
         let end = end_cells(here, per_cell, last);
         let most_m = oracle.highest_m - ray.own_m + self.slack_m;
         let (mut steepest, mut visited) = (f64::NEG_INFINITY, 0);
+        let first = *first_cells;
+        // All crossings of the shortest piece from a cell on.
+        let mut visit = |start: usize, steepest: &mut f64| {
+            let ends = [start, start + (1_usize << FINEST)].map(|cells| cells as f64);
+            for family in families.iter().flatten() {
+                let [first, until] = family.numbers(ends, cells_per_t);
+                for j in first..until {
+                    let crossing = ray.crossing(family, f64::from(j));
+                    if !oracle.inside(crossing.row, crossing.col) {
+                        break;
+                    }
+                    let height_m = oracle.height(family, &crossing);
+                    let slope = (height_m - ray.own_m) / crossing.distance_m;
+                    visited += 1;
+                    if slope > *steepest {
+                        (*steepest, *first_cells) = (slope, start);
+                    }
+                }
+            }
+        };
+        visit(first, &mut steepest);
         let (mut start, mut level) = (0_usize, 0_usize);
         loop {
             let near = start as f64;
@@ -90,7 +114,7 @@ impl Maxima {
             });
             let rise_m = self.levels[level].highest_m(corner) - ray.own_m + self.slack_m;
             let at_m = if rise_m > 0.0 { near } else { far } * metres_per_cell;
-            // False for the first piece, as -∞ · 0 is NaN.
+            // False where nothing was met: -∞ · 0 is NaN.
             if rise_m < steepest * at_m {
                 start += length;
                 if level + 1 < self.levels.len() && start.is_multiple_of(2 * length) {
@@ -102,20 +126,8 @@ impl Maxima {
                 level -= 1;
                 continue;
             }
-            for family in families.iter().flatten() {
-                let [first, until] = family.numbers([near, far], cells_per_t);
-                for j in first..until {
-                    let crossing = ray.crossing(family, f64::from(j));
-                    if !oracle.inside(crossing.row, crossing.col) {
-                        break;
-                    }
-                    let height_m = oracle.height(family, &crossing);
-                    let slope = (height_m - ray.own_m) / crossing.distance_m;
-                    visited += 1;
-                    if slope > steepest {
-                        steepest = slope;
-                    }
-                }
+            if start != first {
+                visit(start, &mut steepest);
             }
             start += length;
         }
@@ -218,15 +230,16 @@ mod tests {
                 let all = Oracle::one_ray(&field, border);
                 let some = Oracle::new(&field, border);
                 let maxima = Maxima::of(&some);
-                // Every grid point of the small fields, and the corners of the others.
+                // Every grid point of the small fields, some of the others, and their corners.
                 let step = (rows * cols).div_ceil(50);
                 let corners = [0, cols - 1, (rows - 1) * cols, rows * cols - 1];
                 for place in (0..rows * cols).step_by(step).chain(corners) {
                     let (row, col) = (place / cols, place % cols);
-                    // Every eighth is along a row or a column.
+                    // Every eighth is along a row or a column. The first piece is that of another azimuth, often a wrong one.
+                    let mut first = 0;
                     for azimuth in (0..32).map(|k| TAU * f64::from(k) / 32.0) {
                         let wanted = all.elevation_rad(row, col, azimuth);
-                        let found = maxima.elevation_rad(&some, row, col, azimuth);
+                        let found = maxima.elevation_rad(&some, [row, col], azimuth, &mut first);
                         assert_eq!(
                             found.to_bits(),
                             wanted.to_bits(),
@@ -240,8 +253,8 @@ mod tests {
 
     /// East of a grid point at height 0 stand a wall 3 cells away, of height 8, and a peak 60 cells away, of height 100. The
     /// first piece has 4 columns and 4 diagonals. The wall's slope, 8/3, exceeds that of a height of 8 at 4 cells or more, and
-    /// that of the peak's height at 48 cells. A block that holds the peak begins 16 cells after a piece that begins at 32, so
-    /// nothing else is visited. Without the wall the peak's slope is found.
+    /// that of the peak's height at 48 cells. The pieces from 4 to 8, 16, 32 and 48 cells, whose blocks hold no more than the wall,
+    /// are skipped. Without the wall the peak's slope is found.
     #[test]
     fn what_lies_behind_a_wall_is_skipped() {
         for (wall, slope) in [(8.0, 8.0 / 3.0), (0.0, 100.0 / 60.0)] {
@@ -254,10 +267,30 @@ mod tests {
             let field = HeightField::new(9, 64, &heights, [1.0; 2], None).unwrap();
             let oracle = Oracle::new(&field, Border::Open);
             let ray = oracle.ray([4, 0], grid_direction(&field, 0.0)).unwrap();
-            let (steepest, visited) = Maxima::of(&oracle).steepest(&oracle, &ray);
+            let (steepest, visited) = Maxima::of(&oracle).steepest(&oracle, &ray, &mut 0);
             assert_eq!(steepest, slope);
             assert_eq!(visited == 8, wall > 0.0, "{visited}");
         }
+    }
+
+    /// Ground that rises as c² up to column 40, with level ground behind: the slope from column 0 is c, so each piece exceeds
+    /// those before. All pieces up to column 44 are visited, the last one as its block begins at column 36: 11 pieces of 4
+    /// columns and 4 diagonals each. The horizon lies in the piece from 36 to 40. A walk that begins there visits only three
+    /// others: the first, as nothing bounds slopes at the grid point itself; that from 32, whose block ends at column 37
+    /// (37² / 32 is 42.8); and the last.
+    #[test]
+    fn the_piece_of_the_last_horizon_saves_others() {
+        let height = |i: usize| if i % 64 <= 40 { ((i % 64) * (i % 64)) as f64 } else { 0.0 };
+        let heights: Vec<f64> = (0..3 * 64).map(height).collect();
+        let field = HeightField::new(3, 64, &heights, [1.0; 2], None).unwrap();
+        let oracle = Oracle::new(&field, Border::Open);
+        let maxima = Maxima::of(&oracle);
+        let ray = oracle.ray([1, 0], grid_direction(&field, 0.0)).unwrap();
+        let mut first = 0;
+        assert_eq!(maxima.steepest(&oracle, &ray, &mut first), (40.0, 11 * 8));
+        assert_eq!(first, 36);
+        assert_eq!(maxima.steepest(&oracle, &ray, &mut first), (40.0, 4 * 8));
+        assert_eq!(first, 36);
     }
 
     /// Each block is the maximum of the rows and columns that its page states.
