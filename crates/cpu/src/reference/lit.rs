@@ -246,9 +246,6 @@ impl<'a> Columns<'a> {
                 let receivers = site.receivers.iter().zip(integrals);
                 for ((receiver, integral), all) in receivers.zip(&mut all) {
                     let lit = receiver.slice(azimuth).above(horizon);
-                    let mut add = |light: f64, texel: [f32; 3]| {
-                        (0..3).for_each(|c| all[c] += weight * light * f64::from(texel[c]));
-                    };
                     if let Some(integral) = integral {
                         let arc = integral.along(&lit);
                         let [low, high] = arc.range();
@@ -256,13 +253,19 @@ impl<'a> Columns<'a> {
                         let end =
                             (row_of(low.max(lit.low)).max(0.0).ceil() as usize).min(self.rows);
                         let mut above = arc.up_to(elevations[first.min(self.rows)].max(lit.low));
+                        let mut sum = [0.0; 3];
                         for (row, texel) in texels.iter().enumerate().take(end).skip(first) {
                             let below = arc.up_to(elevations[row + 1].max(lit.low));
-                            add(above - below, *texel);
+                            let light = above - below;
+                            (0..3).for_each(|c| sum[c] += light * f64::from(texel[c]));
                             above = below;
                         }
+                        (0..3).for_each(|c| all[c] += weight * sum[c]);
                         continue;
                     }
+                    let mut add = |light: f64, texel: [f32; 3]| {
+                        (0..3).for_each(|c| all[c] += weight * light * f64::from(texel[c]));
+                    };
                     let above = (row_of(lit.low).max(0.0) as usize).min(self.rows);
                     let [a, b] = sums[column * (self.rows + 1) + above];
                     add(lit.a, a);

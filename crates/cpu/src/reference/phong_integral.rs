@@ -22,6 +22,7 @@ pub(crate) struct PhongIntegral {
     least: f64,
     end_rad: f64,
     step_rad: f64,
+    steps_per_rad: f64,
     /// At equal steps from -`end_rad` to `end_rad`: ∫cosⁿ⁺¹ from the first, cosⁿ⁺¹ and its slope.
     nodes: Arc<[[f64; 3]]>,
 }
@@ -45,7 +46,9 @@ impl PhongIntegral {
             });
             nodes.push([integral, value, slope]);
         }
-        Self { exponent, least, end_rad, step_rad, nodes: nodes.into() }
+        // A product takes less time than a quotient, once for each texel of a lobe.
+        let steps_per_rad = 1.0 / step_rad;
+        Self { exponent, least, end_rad, step_rad, steps_per_rad, nodes: nodes.into() }
     }
 
     /// The lobe in the azimuth of a slice, which must have this exponent.
@@ -74,7 +77,8 @@ impl PhongIntegral {
 
     /// ∫cosⁿ⁺¹ up to an angle, and cosⁿ⁺¹ there.
     fn at(&self, angle_rad: f64) -> [f64; 2] {
-        let place = (angle_rad.clamp(-self.end_rad, self.end_rad) + self.end_rad) / self.step_rad;
+        let from_end_rad = angle_rad.clamp(-self.end_rad, self.end_rad) + self.end_rad;
+        let place = from_end_rad * self.steps_per_rad;
         let node = (place as usize).min(self.nodes.len() - 2);
         let x = place - node as f64;
         let [first, second] = [self.nodes[node], self.nodes[node + 1]];
