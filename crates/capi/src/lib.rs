@@ -7,6 +7,7 @@
 mod allocator;
 mod errors;
 mod plan;
+mod quality;
 mod read;
 mod renderer;
 mod scene;
@@ -21,6 +22,7 @@ type PFN_vkGetInstanceProcAddr = Option<ash::vk::PFN_vkGetInstanceProcAddr>;
 pub use allocator::*;
 pub use errors::*;
 pub use plan::*;
+pub use quality::*;
 pub use renderer::*;
 pub use scene::*;
 pub use types::*;

@@ -6,8 +6,9 @@ use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
 use ridgelight::scene::Border;
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
+use crate::quality::{RidgelightQuality, quality};
 use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, write};
-use crate::scene::{RidgelightQuality, RidgelightScene, outer, quality, scene};
+use crate::scene::{RidgelightScene, outer, scene};
 use crate::types::{RidgelightHost, host};
 
 /// The passes that light one scene, in order, and their resources; plain data. Threads may share it, except

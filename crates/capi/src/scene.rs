@@ -1,6 +1,6 @@
 use ridgelight::scene::{
-    Albedo, Border, Environment, HeightField, KeyLight, Lights, PhongSpecular, Quality, Scene,
-    Specular, SphereLight, Sun, Surface, Values, setting,
+    Albedo, Border, Environment, HeightField, KeyLight, Lights, PhongSpecular, Scene, Specular,
+    SphereLight, Sun, Surface,
 };
 
 use crate::errors::{Done, Failure};
@@ -253,130 +253,109 @@ unsafe fn lights(scene: &RidgelightScene) -> Done<Lights> {
     Ok(lights)
 }
 
-/// Speed against accuracy. In every field 0 is the default.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RidgelightQuality {
-    /// sizeof(RidgelightQuality).
-    pub struct_size: u32,
-    /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
-    pub method: u32,
-    /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp silhouettes.
-    pub azimuths: u32,
-    /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
-    /// soft shadows.
-    pub sun_azimuths: u32,
-    /// Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
-    /// 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
-    pub lines: u32,
-    /// How the results of lines are interpolated to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest
-    /// (default), 5 aimed, 6 aimed-around. aimed-nearest is as fast as nearest and more exact than the first three
-    /// (measured on llvmpipe, lines one cell apart).
-    /// aimed and aimed-around are slower and more exact.
-    pub fuse: u32,
-    /// Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
-    /// beforehand.)
-    pub precision: u32,
-    /// Hull storage: 1 auto (default), 2 private, 3 shared, 4 occluder-list. Never changes the result.
-    pub hull: u32,
-    /// Levels per doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared
-    /// horizons.
-    pub level_step: u32,
-    /// One more than the doublings of resolution by which a pyramid march reads finer levels, [1..5], default
-    /// 3. Fewer: blurred distant horizons.
-    pub level_offset_plus_1: u32,
-    /// How a pyramid's levels are stored: 1 stack (default), 2 pyramid: less memory, slower.
-    pub levels: u32,
-    /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, small bright places smeared.
-    pub table_elevations: u32,
-    /// How an environment is evaluated: 1 auto (default), 2 table, 3 sh.
-    pub basis: u32,
-    /// SH order of visibility, [2..6], default 4.
-    pub sh_order: u32,
-    /// How visibility becomes SH: 1 slices (default), 2 nlp, 3 table.
-    pub wedges: u32,
-    /// Receiver: how visibility becomes light: 1 plane (default), 2 cosine.
-    pub receiver: u32,
-    /// SH window: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
-    pub window: u32,
-    /// Visibility is found at every nth grid point, n = 1, 2 or 4, default 1. More: faster, blurred shadows.
-    pub subsample: u32,
-    /// Horizons per side of a table of wedges, [4..256], default 64.
-    pub wedge_side: u32,
-    /// Basis of sphere lights: 1 exact (default), 2 sh.
-    pub light_basis: u32,
-    /// Largest light that a texel may lose from all sphere lights together, as a share of the brightest light
-    /// that one of them would give to level ground at height 0, [0..1], default 1/65536; below 0: none.
-    pub light_cutoff: f64,
-    /// Number of bounces of light, [0..64].
-    pub bounces: u32,
-    /// How bounced light is found: 1 brute-force, 2 sweep, 3 pyramid, 4 auto (default).
-    pub bounce_engine: u32,
-    /// Azimuths of bounced light per grid point, [4..1024], default 32.
-    pub bounce_azimuths: u32,
-    /// As level_step, for the pyramid of exit radiance, [1..16], default 4.
-    pub bounce_level_step: u32,
-    /// As level_offset_plus_1, for the pyramid of exit radiance, [1..5], default 3.
-    pub bounce_level_offset_plus_1: u32,
-    /// Share of the direct light's energy that bounces may leave out, [0..1], default 1/65536; below 0: none.
-    pub bounce_cutoff: f64,
-    /// Storage of specular light between bounces: 1 vector (default), 2 vector-f16, 3 scalar.
-    pub bounce_specular: u32,
-}
-
-// SAFETY: numbers; the size is first.
-unsafe impl SizeFirst for RidgelightQuality {}
-
-/// Calls a macro with every setting's field.
-macro_rules! each_field {
-    ($call:ident) => {
-        $call! {
-            method azimuths sun_azimuths lines fuse precision hull level_step level_offset_plus_1
-            levels table_elevations basis sh_order wedges receiver window subsample wedge_side
-            light_basis light_cutoff bounces bounce_engine bounce_azimuths bounce_level_step
-            bounce_level_offset_plus_1 bounce_cutoff bounce_specular
-        }
-    };
-}
-
-/// The quality that a struct describes; null is the default.
-///
-/// # Safety
-/// As [`read`].
-pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
-    let default = Quality::default();
-    if from.is_null() {
-        return Ok(default);
-    }
-    // SAFETY: as the caller says.
-    let q = unsafe { read(from, "quality") }?;
-    // 0 is the default. Words count from 1. Numbers that may be 0 have 1 added; a share below 0 is 0.
-    macro_rules! values {
-        ($($field:ident)*) => { [$((stringify!($field), f64::from(q.$field))),*] };
-    }
-    let mut quality = default;
-    for (field, value) in each_field!(values).into_iter().filter(|(_, value)| *value != 0.0) {
-        let name = field.strip_suffix("_plus_1");
-        let setting = setting(name.unwrap_or(field)).expect("a field for each setting");
-        let text = match &setting.values {
-            // NaN stays NaN, which the setting refuses.
-            Values::Share if value < 0.0 => "0".to_owned(),
-            Values::Share => value.to_string(),
-            Values::Words(words) => {
-                // A packed hull would need the heights beforehand.
-                let count = words.len() - usize::from(field == "precision");
-                let word = words[..count].get(value as usize - 1).ok_or_else(|| {
-                    let expected = format!("one of its constants, 0 to {count}");
-                    Failure::argument(&format!("quality: {field}"), value, &expected)
-                })?;
-                word.name.to_owned()
-            }
-            _ => (value - if name.is_some() { 1.0 } else { 0.0 }).to_string(),
-        };
-        setting.set(&mut quality, &text)?;
-    }
-    Ok(quality)
-}
-
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    /// All but `has_voids`, which the view reads: `voids_of_c_are_filled_and_masked`.
+    #[test]
+    fn every_field_of_a_scene_arrives() {
+        let suns = [RidgelightSun {
+            struct_size: size_of::<RidgelightSun>() as u32,
+            irradiance: [1.0, 2.0, 3.0],
+            azimuth_rad: 0.1,
+            elevation_rad: 0.2,
+            diameter_rad: 0.3,
+        }; 2];
+        let keys = [RidgelightKeyLight {
+            struct_size: size_of::<RidgelightKeyLight>() as u32,
+            radiance: [4.0, 5.0, 6.0],
+            azimuth_rad: 0.4,
+            width_rad: 0.5,
+            elevations_rad: [0.6, 0.7],
+        }; 3];
+        let spheres = [RidgelightSphereLight {
+            struct_size: size_of::<RidgelightSphereLight>() as u32,
+            radiance: [7.0, 8.0, 9.0],
+            position_m: [10.0, 11.0, 12.0],
+            radius_m: 0.8,
+        }; 4];
+        let numbers: Vec<f32> = (1..=3 * 8 * 4).map(|i| i as f32 / 128.0).collect();
+        let [albedo, environment] = [&numbers[..3 * 5 * 3], &numbers[..]];
+        let given = RidgelightScene {
+            struct_size: size_of::<RidgelightScene>() as u32,
+            rows: 5,
+            cols: 3,
+            border: RIDGELIGHT_BORDER_PERIODIC,
+            cell_m: [13.0, 14.0],
+            sky: [0.11, 0.12, 0.13],
+            albedo: [0.14, 0.15, 0.16],
+            albedo_is_map: 1,
+            has_environment: 1,
+            albedo_map: albedo.as_ptr(),
+            environment: environment.as_ptr(),
+            environment_width: 8,
+            environment_height: 4,
+            environment_rotation_rad: 0.9,
+            specular_exponent: 15.0,
+            specular_scale: 0.17,
+            suns: suns.as_ptr(),
+            keys: keys.as_ptr(),
+            spheres: spheres.as_ptr(),
+            sun_count: 2,
+            key_count: 3,
+            sphere_count: 4,
+            has_voids: 0,
+            eye_m: [0.0; 3],
+            has_eye: 0,
+            reserved: 0,
+        };
+        // SAFETY: arrays of this function, of these sizes, or null.
+        let of = |given: &RidgelightScene| unsafe { scene(given) }.ok().expect("a scene");
+        let found = of(&given);
+        let (field, surface, lights) = (&found.field, &found.surface, &found.lights);
+        assert_eq!((field.rows(), field.cols(), field.cell_m()), (5, 3, [13.0, 14.0]));
+        let map = albedo.chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
+        assert_eq!(surface.albedo, Albedo::Map(map));
+        let phong = PhongSpecular { exponent: 15.0, scale: 0.17 };
+        assert_eq!(surface.specular, Some(Specular::Constant(phong)));
+        assert_eq!(lights.sky, Some([0.11, 0.12, 0.13]));
+        let around = lights.environment.as_ref().expect("an environment");
+        assert_eq!((around.width(), around.height(), around.rotation_rad()), (8, 4, 0.9));
+        assert_eq!(around.texels().as_flattened(), environment);
+        let sun = Sun {
+            azimuth_rad: 0.1,
+            elevation_rad: 0.2,
+            diameter_rad: 0.3,
+            irradiance: [1.0, 2.0, 3.0],
+        };
+        assert_eq!(lights.suns, [sun; 2]);
+        let key = KeyLight {
+            azimuth_rad: 0.4,
+            width_rad: 0.5,
+            elevations_rad: [0.6, 0.7],
+            radiance: [4.0, 5.0, 6.0],
+        };
+        assert_eq!(lights.keys, [key; 3]);
+        let sphere = SphereLight {
+            position_m: [10.0, 11.0, 12.0],
+            radius_m: 0.8,
+            radiance: [7.0, 8.0, 9.0],
+        };
+        assert_eq!(lights.sphere_lights, [sphere; 4]);
+
+        let constant = of(&RidgelightScene { albedo_is_map: 0, ..given });
+        assert_eq!(constant.surface.albedo, Albedo::Constant([0.14, 0.15, 0.16]));
+        let borders = [
+            (0, Border::Plane),
+            (RIDGELIGHT_BORDER_PLANE, Border::Plane),
+            (RIDGELIGHT_BORDER_OPEN, Border::Open),
+            (RIDGELIGHT_BORDER_PERIODIC, Border::Periodic),
+        ];
+        assert_eq!(borders.map(|(value, _)| value), [0, 1, 2, 3]);
+        for (border, wanted) in borders {
+            let found = of(&RidgelightScene { border, ..given });
+            assert_eq!(found.surface.border, wanted, "{border}");
+        }
+    }
+}

@@ -36,7 +36,9 @@ fn the_header_is_what_the_source_says() {
     let config =
         cbindgen::Config::from_file(Path::new(env!("CARGO_MANIFEST_DIR")).join("cbindgen.toml"));
     let mut builder = cbindgen::Builder::new().with_config(config.expect("cbindgen.toml"));
-    for file in ["errors", "types", "allocator", "scene", "plan", "renderer", "view", "voids"] {
+    for file in
+        ["errors", "types", "allocator", "scene", "quality", "plan", "renderer", "view", "voids"]
+    {
         builder = builder.with_src(source.join(file).with_extension("rs"));
     }
     let mut made = Vec::new();
