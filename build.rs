@@ -1,17 +1,14 @@
-//! Compiles or copies the shaders for the library: SPIR-V in `$OUT_DIR/shaders.spv`, and its reflection in
-//! `$OUT_DIR/shaders.rs`.
+//! Writes the shaders for the library: SPIR-V to `$OUT_DIR/shaders.spv`, and its reflection to `$OUT_DIR/shaders.rs`.
 //!
-//! With the feature `glslang` (default) or `shaderc`, both files come from the GLSL of `shaders_glsl/`. Without
-//! either they are copies of `shaders_glsl/compiled/`, which needs no C++ compiler. `tools/shaders` writes that
-//! folder from the GLSL; `tools/shaders --check` fails where the two differ.
+//! With the feature `glslang` (default) or `shaderc`, the SPIR-V comes from the GLSL of `shaders_glsl/`. Without
+//! either it is that of `shaders_glsl/compiled/shaders.spv`, which needs no C++ compiler. `tools/shaders` writes that
+//! file from the GLSL; `tools/shaders --check` fails where the two differ.
 
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
 #[path = "build/compile.rs"]
 mod compile;
-#[cfg(any(feature = "glslang", feature = "shaderc"))]
 #[path = "build/generate.rs"]
 mod generate;
-#[cfg(any(feature = "glslang", feature = "shaderc"))]
 #[path = "build/reflect.rs"]
 mod reflect;
 
@@ -20,25 +17,11 @@ use std::{env, fs};
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=build");
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    generate::core(&out);
     #[cfg(any(feature = "glslang", feature = "shaderc"))]
-    {
-        println!("cargo:rerun-if-changed=build");
-        generate::core(&out);
-        generate::decoders(&out);
-    }
-    #[cfg(not(any(feature = "glslang", feature = "shaderc")))]
-    copy(&out);
-}
-
-/// Copies the committed files instead of compiling.
-#[cfg(not(any(feature = "glslang", feature = "shaderc")))]
-fn copy(out: &Path) {
-    for name in ["shaders.rs", "shaders.spv"] {
-        let from = Path::new("shaders_glsl/compiled").join(name);
-        println!("cargo:rerun-if-changed={}", from.display());
-        write(&out.join(name), &read(&from));
-    }
+    generate::decoders(&out);
 }
 
 fn read(path: &Path) -> Vec<u8> {

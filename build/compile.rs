@@ -1,45 +1,15 @@
 //! GLSL to SPIR-V 1.3, which every Vulkan 1.1 device supports.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::generate::stage;
 use super::{fail, read};
-
-/// Folders of `shaders_glsl/` without shaders: include files, and the output of `tools/shaders`.
-const NOT_SHADERS: [&str; 2] = ["shared", "compiled"];
-
-/// The shaders in a folder and in the folders inside it, sorted by file name.
-pub(crate) fn shaders_in(folder: &Path) -> Vec<PathBuf> {
-    let mut sources = Vec::new();
-    find(folder, &mut sources);
-    sources.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
-    sources
-}
-
-fn find(folder: &Path, sources: &mut Vec<PathBuf>) {
-    let entries = fs::read_dir(folder);
-    let entries = entries.unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())));
-    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
-        let is_other = NOT_SHADERS.iter().any(|name| path.ends_with(name));
-        if path.is_dir() && !is_other {
-            find(&path, sources);
-        } else if stage(&path).is_some() {
-            sources.push(path);
-        }
-    }
-}
 
 /// The SPIR-V of one shader. The first error stops the build with file and line.
 pub(crate) fn compile(path: &Path) -> Vec<u32> {
     let (text, files) = include(path);
     translate(&text, &files)
-}
-
-/// The shader stage of a file, by its extension.
-pub(crate) fn stage(path: &Path) -> Option<&'static str> {
-    let extension = path.extension()?;
-    ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
 }
 
 /// Inlines `#include "x"` lines (relative to the shader's folder, each file once). Returns the text with

@@ -4,30 +4,35 @@
 //! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-use super::compile::{compile, shaders_in, stage};
+#[cfg(any(feature = "glslang", feature = "shaderc"))]
+use super::compile::compile;
 use super::reflect::{self, Layouts, Reflection, reflect};
-use super::write;
+use super::{fail, write};
+
+/// Folders of `shaders_glsl/` without shaders: include files, and the output of `tools/shaders`.
+const NOT_SHADERS: [&str; 2] = ["shared", "compiled"];
 
 /// The library's shaders.
 pub(crate) fn core(out: &Path) {
     let folder = Path::new("shaders_glsl");
     println!("cargo:rerun-if-changed={}", folder.display());
     let mut table = String::from(
-        "// Written by build.rs from the SPIR-V of shaders_glsl/; committed by tools/shaders. Not edited by hand.\n\n",
+        "// Written by build.rs from the SPIR-V of shaders_glsl/. Not edited by hand.\n\n",
     );
     let mut layouts = Layouts::default();
     let mut all_words = Vec::new();
     let (mut names, mut graphics) = (Vec::new(), Vec::new());
-    for path in shaders_in(folder) {
-        let name = name_of(&path);
-        let words = compile(&path);
+    let sources = shaders_in(folder);
+    for (path, words) in sources.iter().zip(modules(&sources)) {
+        let name = name_of(path);
         let found = reflect(&name, &words, &mut layouts);
         let source = path.to_string_lossy().replace('\\', "/");
         add_shader(&mut table, (&name, &source), [all_words.len(), words.len()], &found);
         all_words.extend(words);
-        if stage(&path) == Some("comp") { names.push(name) } else { graphics.push(name) }
+        if stage(path) == Some("comp") { names.push(name) } else { graphics.push(name) }
     }
     for (what, list, names) in
         [("compute shader", "ALL", names), ("vertex and fragment shader", "GRAPHICS", graphics)]
@@ -47,8 +52,56 @@ pub(crate) fn core(out: &Path) {
     write(&out.join("shaders.spv"), &bytes);
 }
 
+/// The SPIR-V of each shader, from its GLSL.
+#[cfg(any(feature = "glslang", feature = "shaderc"))]
+fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
+    sources.iter().map(|path| compile(path)).collect()
+}
+
+/// The SPIR-V of each shader, from the committed file.
+#[cfg(not(any(feature = "glslang", feature = "shaderc")))]
+fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
+    // The first word of a module. Elsewhere it would give one module too many, which is refused.
+    const MAGIC: u32 = 0x0723_0203;
+    let path = Path::new("shaders_glsl/compiled/shaders.spv");
+    let bytes = super::read(path);
+    let words: Vec<u32> =
+        bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+    let parts = words.split(|word| *word == MAGIC).skip(1);
+    let modules: Vec<_> = parts.map(|rest| [&[MAGIC][..], rest].concat()).collect();
+    if modules.len() != sources.len() {
+        let (path, found, expected) = (path.display(), modules.len(), sources.len());
+        fail(&format!(
+            "{path}: found {found} modules, expected {expected}, one of each shader; run tools/shaders"
+        ));
+    }
+    modules
+}
+
+/// The shaders in a folder and in the folders inside it, sorted by file name.
+fn shaders_in(folder: &Path) -> Vec<PathBuf> {
+    let mut sources = Vec::new();
+    find(folder, &mut sources);
+    sources.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
+    sources
+}
+
+fn find(folder: &Path, sources: &mut Vec<PathBuf>) {
+    let entries = fs::read_dir(folder);
+    let entries = entries.unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())));
+    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
+        let is_other = NOT_SHADERS.iter().any(|name| path.ends_with(name));
+        if path.is_dir() && !is_other {
+            find(&path, sources);
+        } else if stage(&path).is_some() {
+            sources.push(path);
+        }
+    }
+}
+
 /// Shaders of tests (`tests/gpu/bake/decoders/shaders/*.comp`, where present) as `NAME.spv`; the library does not contain
 /// them.
+#[cfg(any(feature = "glslang", feature = "shaderc"))]
 pub(crate) fn decoders(out: &Path) {
     let folder = Path::new("tests/gpu/bake/decoders/shaders");
     if !folder.is_dir() {
@@ -59,6 +112,12 @@ pub(crate) fn decoders(out: &Path) {
         let bytes: Vec<u8> = compile(&path).iter().flat_map(|word| word.to_ne_bytes()).collect();
         write(&out.join(name_of(&path)).with_extension("spv"), &bytes);
     }
+}
+
+/// The shader stage of a file, by its extension.
+pub(crate) fn stage(path: &Path) -> Option<&'static str> {
+    let extension = path.extension()?;
+    ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
 }
 
 fn name_of(path: &Path) -> String {

@@ -1,11 +1,61 @@
 //! Reflects a SPIR-V module: bindings, push constants and specialisation constants.
+//!
+//! Numbers and layouts are those of the SPIR-V specification, section 3. They are read without a crate, so that a build from
+//! the committed SPIR-V has no build dependency.
 
-use std::collections::BTreeMap;
-
-use rspirv::dr::{Instruction, Module, Operand};
-use rspirv::spirv::{BuiltIn, Decoration, Dim, ImageFormat, Op, StorageClass};
+use std::collections::{BTreeMap, HashMap};
 
 use super::fail;
+
+/// Opcodes.
+mod op {
+    pub const NAME: u32 = 5;
+    pub const MEMBER_NAME: u32 = 6;
+    pub const TYPE_VOID: u32 = 19;
+    pub const TYPE_INT: u32 = 21;
+    pub const TYPE_FLOAT: u32 = 22;
+    pub const TYPE_VECTOR: u32 = 23;
+    pub const TYPE_MATRIX: u32 = 24;
+    pub const TYPE_IMAGE: u32 = 25;
+    pub const TYPE_ARRAY: u32 = 28;
+    pub const TYPE_STRUCT: u32 = 30;
+    pub const TYPE_FUNCTION: u32 = 33;
+    pub const CONSTANT_TRUE: u32 = 41;
+    pub const SPEC_CONSTANT_TRUE: u32 = 48;
+    pub const SPEC_CONSTANT_FALSE: u32 = 49;
+    pub const SPEC_CONSTANT: u32 = 50;
+    pub const SPEC_CONSTANT_COMPOSITE: u32 = 51;
+    pub const SPEC_CONSTANT_OP: u32 = 52;
+    pub const FUNCTION: u32 = 54;
+    pub const VARIABLE: u32 = 59;
+    pub const DECORATE: u32 = 71;
+    pub const MEMBER_DECORATE: u32 = 72;
+}
+
+/// Decorations.
+mod decoration {
+    pub const SPEC_ID: u32 = 1;
+    pub const ROW_MAJOR: u32 = 4;
+    pub const ARRAY_STRIDE: u32 = 6;
+    pub const MATRIX_STRIDE: u32 = 7;
+    pub const BUILT_IN: u32 = 11;
+    pub const NON_WRITABLE: u32 = 24;
+    pub const BINDING: u32 = 33;
+    pub const DESCRIPTOR_SET: u32 = 34;
+    pub const OFFSET: u32 = 35;
+}
+
+/// Storage class of push constants.
+const PUSH_CONSTANT: u32 = 9;
+/// `Dim` of texel buffers.
+const DIM_BUFFER: u32 = 5;
+/// Built-in of a workgroup's size.
+const WORKGROUP_SIZE: u32 = 25;
+/// Image formats from number 1 on; 0 is unknown.
+const FORMATS: &str = "Rgba32f Rgba16f R32f Rgba8 Rgba8Snorm Rg32f Rg16f R11fG11fB10f R16f Rgba16 \
+    Rgb10A2 Rg16 Rg8 R16 R8 Rgba16Snorm Rg16Snorm Rg8Snorm R16Snorm R8Snorm Rgba32i Rgba16i Rgba8i \
+    R32i Rg32i Rg16i Rg8i R16i R8i Rgba32ui Rgba16ui Rgba8ui R32ui Rgb10a2ui Rg32ui Rg16ui Rg8ui \
+    R16ui R8ui";
 
 /// One binding of a shader.
 pub(crate) struct Binding {
@@ -58,8 +108,8 @@ pub(crate) struct Layouts {
 /// Reflects one shader and adds the layouts of its structs. Structs of one name must have one layout in all
 /// shaders.
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
-    let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
-    let d = Decorations { module: &module };
+    let d = Declarations::read(words)
+        .unwrap_or_else(|| fail(&format!("{name}: an instruction is longer than its module")));
     let (push, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
     Reflection { push, bindings, constants: constants(name, &d) }
@@ -68,65 +118,53 @@ pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Refle
 /// Struct of the push constants, which it adds, and the bindings by number.
 fn variables(
     name: &str,
-    d: &Decorations<'_>,
+    d: &Declarations<'_>,
     layouts: &mut Layouts,
 ) -> (String, BTreeMap<u32, Binding>) {
     let mut bindings = BTreeMap::new();
     let mut push = "()".to_owned();
-    for variable in &d.module.types_global_values {
-        if variable.class.opcode != Op::Variable {
+    for (target, variable) in d.all(op::VARIABLE) {
+        let [class, held] = *d.value(variable.of_type).operands else { continue };
+        if class == PUSH_CONSTANT {
+            (push, _) = push_type(name, d, (held, None), layouts);
             continue;
         }
-        let target = variable.result_id.expect("a variable has an id");
-        let pointer = d.ty(variable.result_type.expect("a variable has a type"));
-        let Operand::StorageClass(class) = pointer.operands[0] else { continue };
-        let pointee = d.ty(id(&pointer.operands[1]));
-        if class == StorageClass::PushConstant {
-            (push, _) = push_type(name, d, (id(&pointer.operands[1]), None), layouts);
-            continue;
-        }
-        let Some(binding) = d.of(target, Decoration::Binding) else { continue };
-        if d.of(target, Decoration::DescriptorSet).unwrap_or(0) != 0 {
+        let Some(binding) = d.of(target, decoration::BINDING) else { continue };
+        if d.of(target, decoration::DESCRIPTOR_SET).unwrap_or(0) != 0 {
             fail(&format!("{name}: only descriptor set 0 is used"));
         }
-        let (kind, written) = match pointee.class.opcode {
-            Op::TypeStruct => {
-                let structure = pointee.result_id.expect("a struct has an id");
-                let members = pointee.operands.len() as u32;
-                let frozen = (0..members)
-                    .all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
+        let (kind, written) = match (d.value(held).code, d.value(held).operands) {
+            (op::TYPE_STRUCT, members) => {
+                let frozen = (0..members.len() as u32)
+                    .all(|m| d.of_member(held, m, decoration::NON_WRITABLE).is_some());
                 ("StorageBuffer".to_owned(), !frozen)
             }
-            Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
-                ("TexelBuffer".to_owned(), false)
-            }
-            Op::TypeImage => {
-                let uint = d.ty(id(&pointee.operands[0])).class.opcode == Op::TypeInt;
-                let layered = literal(&pointee.operands[3]) == 1;
-                if literal(&pointee.operands[5]) == 2 {
-                    let Operand::ImageFormat(format) = pointee.operands[6] else {
-                        fail(&format!("{name}: a storage image without a format field"))
-                    };
-                    if format == ImageFormat::Unknown {
+            (op::TYPE_IMAGE, [_, DIM_BUFFER, ..]) => ("TexelBuffer".to_owned(), false),
+            (op::TYPE_IMAGE, [texel, _, _, arrayed, _, sampled, format, ..]) => {
+                let uint = d.value(*texel).code == op::TYPE_INT;
+                let layered = *arrayed == 1;
+                if *sampled == 2 {
+                    let named = |before: usize| FORMATS.split_whitespace().nth(before);
+                    let format = (*format as usize).checked_sub(1).and_then(named);
+                    let Some(format) = format else {
                         fail(&format!(
                             "{name}: binding {binding}: a storage image without a format"
-                        ));
-                    }
+                        ))
+                    };
                     let kind = format!(
-                        "StorageImage {{ format: {:?}, uint: {uint}, layered: {layered} }}",
-                        format!("{format:?}")
+                        "StorageImage {{ format: {format:?}, uint: {uint}, layered: {layered} }}"
                     );
-                    (kind, d.of(target, Decoration::NonWritable).is_none())
+                    (kind, d.of(target, decoration::NON_WRITABLE).is_none())
                 } else {
                     (format!("SampledImage {{ uint: {uint}, layered: {layered} }}"), false)
                 }
             }
-            other => {
-                fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
-            }
+            (code, _) => fail(&format!(
+                "{name}: binding {binding} is a type of opcode {code}, which nothing here uses"
+            )),
         };
         // A block without an instance name has the name of its type.
-        let block = snake(&d.name(pointee.result_id.expect("a type has an id")));
+        let block = snake(&d.name(held));
         let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
         bindings.insert(binding, Binding { name, kind, written });
     }
@@ -139,13 +177,13 @@ fn variables(
 /// nor rows of matrices first: both are refused.
 fn push_type(
     name: &str,
-    d: &Decorations<'_>,
+    d: &Declarations<'_>,
     (target, columns): (u32, Option<u32>),
     layouts: &mut Layouts,
 ) -> (String, u32) {
-    let ty = d.ty(target);
-    let mut array = |count: u32, stride: Option<(&str, Option<u32>)>| {
-        let (element, bytes) = push_type(name, d, (id(&ty.operands[0]), columns), layouts);
+    let ty = d.value(target);
+    let mut array = |element: u32, count: u32, stride: Option<(&str, Option<u32>)>| {
+        let (element, bytes) = push_type(name, d, (element, columns), layouts);
         if let Some((what, found)) = stride
             && found != Some(bytes)
         {
@@ -154,36 +192,38 @@ fn push_type(
         }
         (format!("[{element}; {count}]"), bytes * count)
     };
-    match ty.class.opcode {
-        Op::TypeFloat => ("f32".to_owned(), 4),
-        Op::TypeInt if literal(&ty.operands[1]) == 1 => ("i32".to_owned(), 4),
-        Op::TypeInt => ("u32".to_owned(), 4),
-        Op::TypeVector => array(literal(&ty.operands[1]), None),
-        Op::TypeMatrix => array(literal(&ty.operands[1]), Some(("MatrixStride", columns))),
-        Op::TypeArray => {
-            let count = literal(&d.ty(id(&ty.operands[1])).operands[0]);
-            array(count, Some(("ArrayStride", d.of(target, Decoration::ArrayStride))))
+    match (ty.code, ty.operands) {
+        (op::TYPE_FLOAT, _) => ("f32".to_owned(), 4),
+        (op::TYPE_INT, [_, 1]) => ("i32".to_owned(), 4),
+        (op::TYPE_INT, _) => ("u32".to_owned(), 4),
+        (op::TYPE_VECTOR, [element, count]) => array(*element, *count, None),
+        (op::TYPE_MATRIX, [column, count]) => {
+            array(*column, *count, Some(("MatrixStride", columns)))
         }
-        Op::TypeStruct => {
+        (op::TYPE_ARRAY, [element, count]) => {
+            let count = d.value(*count).operands[0];
+            array(*element, count, Some(("ArrayStride", d.of(target, decoration::ARRAY_STRIDE))))
+        }
+        (op::TYPE_STRUCT, held) => {
             let structure = d.name(target);
             let mut end = 0;
-            let member = |(m, operand)| {
-                let member = d.member_name(target, m as u32);
-                let of = |decoration| d.of_member(target, m as u32, decoration);
-                let Some(offset) = of(Decoration::Offset) else {
+            let member = |(m, held): (u32, &u32)| {
+                let member = d.member_name(target, m);
+                let of = |decoration| d.of_member(target, m, decoration);
+                let Some(offset) = of(decoration::OFFSET) else {
                     fail(&format!("{name}: {structure}.{member}: found no Offset, expected one"))
                 };
-                if of(Decoration::RowMajor).is_some() {
+                if of(decoration::ROW_MAJOR).is_some() {
                     fail(&format!(
                         "{name}: {structure}.{member}: found RowMajor, expected ColMajor"
                     ));
                 }
-                let of_member = (id(operand), of(Decoration::MatrixStride));
+                let of_member = (*held, of(decoration::MATRIX_STRIDE));
                 let (of_type, size) = push_type(name, d, of_member, layouts);
                 end = end.max(offset + size);
                 Member { offset, name: member, of_type }
             };
-            let members: Vec<Member> = ty.operands.iter().enumerate().map(member).collect();
+            let members: Vec<Member> = (0..).zip(held).map(member).collect();
             let layout = (end, members);
             if layouts.pushes.get(&structure).is_some_and(|known| *known != layout) {
                 fail(&format!("{name}: {structure} has another layout than in an earlier shader"));
@@ -191,23 +231,19 @@ fn push_type(
             layouts.pushes.insert(structure.clone(), layout);
             (structure, end)
         }
-        other => fail(&format!("{name}: a push constant holds a {other:?}")),
+        (code, _) => fail(&format!("{name}: a push constant holds a type of opcode {code}")),
     }
 }
 
-fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
-    for structure in &d.module.types_global_values {
-        if structure.class.opcode != Op::TypeStruct {
-            continue;
-        }
-        let target = structure.result_id.expect("a struct has an id");
+fn add_layouts(name: &str, d: &Declarations<'_>, layouts: &mut Layouts) {
+    for (target, structure) in d.all(op::TYPE_STRUCT) {
         let type_name = d.name(target);
         let is_push = layouts.pushes.contains_key(&type_name);
         if type_name.is_empty() || type_name.starts_with("gl_") || is_push {
             continue;
         }
         for m in 0..structure.operands.len() as u32 {
-            let Some(offset) = d.of_member(target, m, Decoration::Offset) else { continue };
+            let Some(offset) = d.of_member(target, m, decoration::OFFSET) else { continue };
             let member = d.member_name(target, m);
             let known =
                 layouts.others.entry(type_name.clone()).or_default().insert(member.clone(), offset);
@@ -222,36 +258,32 @@ fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
 
 /// The specialisation constants by number. GLSL does not name those of the workgroup size; they are
 /// `LOCAL_SIZE_X`, `_Y` and `_Z`.
-fn constants(name: &str, d: &Decorations<'_>) -> BTreeMap<u32, Constant> {
-    let values = &d.module.types_global_values;
-    let group_size = values.iter().find(|i| {
-        i.class.opcode == Op::SpecConstantComposite && d.is_group_size(i.result_id.unwrap_or(0))
-    });
+fn constants(name: &str, d: &Declarations<'_>) -> BTreeMap<u32, Constant> {
+    let mut composites = d.all(op::SPEC_CONSTANT_COMPOSITE);
+    let group_size =
+        composites.find(|(target, _)| d.of(*target, decoration::BUILT_IN) == Some(WORKGROUP_SIZE));
     let axis_of = |target: u32| {
-        let parts = &group_size?.operands;
-        let axis = parts.iter().position(|part| id(part) == target)?;
+        let (_, size) = group_size?;
+        let axis = size.operands.iter().position(|part| *part == target)?;
         Some(["LOCAL_SIZE_X", "LOCAL_SIZE_Y", "LOCAL_SIZE_Z"][axis].to_owned())
     };
     let mut constants = BTreeMap::new();
-    for constant in values {
-        let target = constant.result_id.unwrap_or(0);
-        let default = match constant.class.opcode {
-            Op::SpecConstantTrue => Default::Bool(true),
-            Op::SpecConstantFalse => Default::Bool(false),
-            Op::SpecConstant => {
-                let of_type = d.ty(constant.result_type.expect("a constant has a type"));
-                let [Operand::LiteralBit32(word)] = constant.operands[..] else {
-                    fail(&format!("{name}: a specialisation constant of other than 32 bits"))
-                };
-                match (of_type.class.opcode, of_type.operands.get(1)) {
-                    (Op::TypeFloat, _) => Default::Float(f32::from_bits(word)),
-                    (_, Some(Operand::LiteralBit32(1))) => Default::Int(word as i32),
-                    _ => Default::Uint(word),
-                }
+    for (&target, constant) in &d.values {
+        let of_type = || d.value(constant.of_type);
+        let default = match (constant.code, constant.operands) {
+            (op::SPEC_CONSTANT_TRUE, _) => Default::Bool(true),
+            (op::SPEC_CONSTANT_FALSE, _) => Default::Bool(false),
+            (op::SPEC_CONSTANT, [word]) => match (of_type().code, of_type().operands) {
+                (op::TYPE_FLOAT, _) => Default::Float(f32::from_bits(*word)),
+                (_, [_, 1]) => Default::Int(word.cast_signed()),
+                _ => Default::Uint(*word),
+            },
+            (op::SPEC_CONSTANT, _) => {
+                fail(&format!("{name}: a specialisation constant of other than 32 bits"))
             }
             _ => continue,
         };
-        let Some(number) = d.of(target, Decoration::SpecId) else { continue };
+        let Some(number) = d.of(target, decoration::SPEC_ID) else { continue };
         let own_name = Some(d.name(target)).filter(|name| !name.is_empty());
         let Some(constant) = axis_of(target).or(own_name) else {
             fail(&format!("{name}: specialisation constant {number} has no name"))
@@ -275,85 +307,94 @@ pub(crate) fn snake(name: &str) -> String {
     out
 }
 
-fn id(operand: &Operand) -> u32 {
-    operand.id_ref_any().unwrap_or_else(|| fail("SPIR-V: an id was expected"))
+/// What a module declares before its functions.
+struct Declarations<'m> {
+    /// By id, and by member for those of members.
+    names: HashMap<(u32, Option<u32>), String>,
+    /// The first operand, 0 without any, by id, member and decoration.
+    decorations: HashMap<(u32, Option<u32>, u32), u32>,
+    /// Types, constants and variables by id.
+    values: BTreeMap<u32, Value<'m>>,
 }
 
-fn literal(operand: &Operand) -> u32 {
-    match operand {
-        Operand::LiteralBit32(n) => *n,
-        _ => fail("SPIR-V: a literal was expected"),
-    }
+/// A type, a constant or a variable.
+struct Value<'m> {
+    code: u32,
+    /// Id of its type; 0 for a type.
+    of_type: u32,
+    /// The operands after its id.
+    operands: &'m [u32],
 }
 
-/// Decorations of a module.
-struct Decorations<'m> {
-    module: &'m Module,
-}
-
-impl Decorations<'_> {
-    fn of(&self, target: u32, wanted: Decoration) -> Option<u32> {
-        self.module.annotations.iter().find_map(|a| {
-            (a.class.opcode == Op::Decorate
-                && id(&a.operands[0]) == target
-                && a.operands[1] == Operand::Decoration(wanted))
-            .then(|| a.operands.get(2).map_or(0, literal))
-        })
+impl<'m> Declarations<'m> {
+    /// `None` where an instruction is longer than the module.
+    fn read(words: &'m [u32]) -> Option<Self> {
+        let (mut names, mut decorations) = (HashMap::new(), HashMap::new());
+        let mut values = BTreeMap::new();
+        // After the header.
+        let mut rest = words.get(5..)?;
+        while let [first, ..] = *rest {
+            let (instruction, others) = rest.split_at_checked((first >> 16) as usize)?;
+            rest = others;
+            let first_of = |operands: &[u32]| operands.first().copied().unwrap_or(0);
+            match (first & 0xffff, instruction.get(1..)?) {
+                (op::NAME, [target, text @ ..]) => {
+                    names.insert((*target, None), string(text));
+                }
+                (op::MEMBER_NAME, [target, member, text @ ..]) => {
+                    names.insert((*target, Some(*member)), string(text));
+                }
+                (op::DECORATE, [target, what, operands @ ..]) => {
+                    decorations.insert((*target, None, *what), first_of(operands));
+                }
+                (op::MEMBER_DECORATE, [target, member, what, operands @ ..]) => {
+                    decorations.insert((*target, Some(*member), *what), first_of(operands));
+                }
+                (code @ op::TYPE_VOID..=op::TYPE_FUNCTION, [id, operands @ ..]) => {
+                    values.insert(*id, Value { code, of_type: 0, operands });
+                }
+                (
+                    code @ (op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP | op::VARIABLE),
+                    [of_type, id, operands @ ..],
+                ) => {
+                    values.insert(*id, Value { code, of_type: *of_type, operands });
+                }
+                (op::FUNCTION, _) => break,
+                _ => {}
+            }
+        }
+        Some(Self { names, decorations, values })
     }
 
-    /// Whether it is a dimension of the workgroup size.
-    fn is_group_size(&self, target: u32) -> bool {
-        self.module.annotations.iter().any(|a| {
-            a.class.opcode == Op::Decorate
-                && id(&a.operands[0]) == target
-                && a.operands[1] == Operand::Decoration(Decoration::BuiltIn)
-                && a.operands[2] == Operand::BuiltIn(BuiltIn::WorkgroupSize)
-        })
+    /// All values of an opcode, with their ids.
+    fn all(&self, code: u32) -> impl Iterator<Item = (u32, &Value<'m>)> {
+        let values = self.values.iter().map(|(id, value)| (*id, value));
+        values.filter(move |(_, value)| value.code == code)
     }
 
-    fn of_member(&self, target: u32, member: u32, wanted: Decoration) -> Option<u32> {
-        self.module.annotations.iter().find_map(|a| {
-            (a.class.opcode == Op::MemberDecorate
-                && id(&a.operands[0]) == target
-                && literal(&a.operands[1]) == member
-                && a.operands[2] == Operand::Decoration(wanted))
-            .then(|| a.operands.get(3).map_or(0, literal))
-        })
+    fn value(&self, id: u32) -> &Value<'m> {
+        self.values.get(&id).unwrap_or_else(|| fail("SPIR-V: a type is missing"))
+    }
+
+    fn of(&self, target: u32, decoration: u32) -> Option<u32> {
+        self.decorations.get(&(target, None, decoration)).copied()
+    }
+
+    fn of_member(&self, target: u32, member: u32, decoration: u32) -> Option<u32> {
+        self.decorations.get(&(target, Some(member), decoration)).copied()
     }
 
     fn name(&self, target: u32) -> String {
-        self.module
-            .debug_names
-            .iter()
-            .find(|n| n.class.opcode == Op::Name && id(&n.operands[0]) == target)
-            .and_then(|n| match &n.operands[1] {
-                Operand::LiteralString(s) => Some(s.clone()),
-                _ => None,
-            })
-            .unwrap_or_default()
+        self.names.get(&(target, None)).cloned().unwrap_or_default()
     }
 
     fn member_name(&self, target: u32, member: u32) -> String {
-        self.module
-            .debug_names
-            .iter()
-            .find(|n| {
-                n.class.opcode == Op::MemberName
-                    && id(&n.operands[0]) == target
-                    && literal(&n.operands[1]) == member
-            })
-            .and_then(|n| match &n.operands[2] {
-                Operand::LiteralString(s) => Some(s.clone()),
-                _ => None,
-            })
-            .unwrap_or_default()
+        self.names.get(&(target, Some(member))).cloned().unwrap_or_default()
     }
+}
 
-    fn ty(&self, target: u32) -> &Instruction {
-        self.module
-            .types_global_values
-            .iter()
-            .find(|i| i.result_id == Some(target))
-            .unwrap_or_else(|| fail("SPIR-V: a type is missing"))
-    }
+/// A literal string, which ends with a byte 0.
+fn string(words: &[u32]) -> String {
+    let bytes = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0);
+    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
 }

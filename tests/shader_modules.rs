@@ -10,11 +10,10 @@ use rspirv::spirv::{Decoration, Op};
 const MAXIMA: [u32; 3] = [40, 41, 42];
 const CLAMPS: [u32; 3] = [43, 44, 45];
 
-/// Name and module of each committed shader.
+/// Name and module of each shader.
 fn modules() -> Vec<(String, Module)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl/compiled");
-    let list = std::fs::read_to_string(folder.join("shaders.rs")).expect("the list");
-    let bytes = std::fs::read(folder.join("shaders.spv")).expect("the modules");
+    let list = include_str!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+    let bytes = include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv"));
     let words: Vec<u32> = bytes
         .chunks_exact(4)
         .map(|b| u32::from_le_bytes(b.try_into().expect("four bytes")))

@@ -65,6 +65,13 @@ fn matrix(builder: &mut Builder, stride: Option<u32>, order: Decoration) -> u32 
     matrix
 }
 
+/// An instruction of two words, of which the module has one.
+#[test]
+#[should_panic(expected = "an instruction is longer than its module")]
+fn modules_that_end_too_early_are_refused() {
+    reflect::reflect("test", &[0x0723_0203, 0, 0, 0, 0, 2 << 16], &mut Layouts::default());
+}
+
 /// The last member ends before another one: 8 + 4·4 = 24 bytes.
 #[test]
 fn bytes_reach_to_the_farthest_member() {
