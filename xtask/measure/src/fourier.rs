@@ -8,8 +8,8 @@ use ridgelight::scene::{HeightField, Quality};
 use crate::accuracy::horizons;
 use crate::common::args::Args;
 use crate::common::frames::device;
+use crate::common::terrains::{SIDES, Terrain, terrains};
 use crate::common::{Outcome, cells, head, xorshift};
-use crate::suns::fields;
 
 /// The azimuths of bevy-clipmap's own baker.
 const AZIMUTHS: u32 = 360;
@@ -67,7 +67,7 @@ fn errors(gpu: &mut Headless, field: &HeightField) -> Result<Vec<[f64; 4]>> {
 }
 
 pub fn run(mut args: Args) -> Outcome {
-    let fields = fields(args.folder().as_deref())?;
+    let terrains = terrains(args.folder().as_deref(), SIDES)?;
     let mut gpu = args.open()?;
     println!(
         "{}: horizons at {AZIMUTHS} azimuths of {PICKS} random grid points, by sweeps, and Fourier series of their tangents",
@@ -76,7 +76,7 @@ pub fn run(mut args: Args) -> Outcome {
     head(
         "| field | coefficients | tangent error % | mean error ° | 99.9th percentile ° | maximum ° |",
     );
-    for (name, field) in &fields {
+    for Terrain { name, field, .. } in &terrains {
         for (coefficients, errors) in COEFFICIENTS.iter().zip(errors(&mut gpu, field)?) {
             println!("| {name} | {coefficients} | {} |", cells(2, errors));
         }

@@ -61,7 +61,7 @@ impl<'a> Entry<'a> {
 }
 
 /// A synthetic terrain by its name.
-pub fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
+fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
     match name {
         "city" => terrain::city(side),
         "coast" => terrain::coast(side),

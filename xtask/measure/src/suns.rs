@@ -1,7 +1,5 @@
 //! Suns: errors and times of the default, of hull sweeps, of their slowest fuse and of shadow-height maps, against brute force.
 
-use std::path::Path;
-
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Picture};
@@ -9,15 +7,14 @@ use ridgelight::scene::{Border, Fuse, HeightField, Lights, Method, Quality, Scen
 
 use crate::common::args::Args;
 use crate::common::frames::{device, drawn, error_of, frame, frames_in_turn, with_picture};
+use crate::common::terrains::{BORDERS, SIDES, Terrain, border_name, terrains};
 use crate::common::{Outcome, head, inputs, median};
-use crate::gallery::terrain_of;
 
 /// Degrees above the horizon.
 const ELEVATIONS: [f64; 4] = [6.0, 12.0, 25.0, 50.0];
 /// Compass degrees.
 const AZIMUTH: f64 = 115.0;
 const DIAMETER: f64 = 0.53;
-const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
 /// Frames of each setting, drawn in turn.
 const TURNS: usize = 15;
 
@@ -32,23 +29,6 @@ fn scene(field: &HeightField, border: Border, elevation: f64) -> Scene {
     let mut scene = inputs::lit_by(field.clone(), lights);
     scene.surface.border = border;
     scene
-}
-
-/// The bundled mountain, also three times as steep, and synthetic fields; real ones of a folder.
-pub fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
-    let mut all = vec![
-        ("Mt Washington, 256²".to_owned(), inputs::mountain(1.0)?),
-        ("the same, relief x 3".to_owned(), inputs::mountain(3.0)?),
-        ("synthetic city, 384²".to_owned(), terrain_of("city", 384, 0.0)?),
-        ("synthetic dunes, 384²".to_owned(), terrain_of("dunes", 384, 0.0)?),
-    ];
-    for name in
-        folder.map_or(&[][..], |_| &[inputs::WHITE_MOUNTAINS, inputs::RAINIER, inputs::MOSS])
-    {
-        let field = inputs::field_of(folder.expect("listed"), name)?;
-        all.push((format!("{name}, 384²"), inputs::middle(&field, 384)?));
-    }
-    Ok(all)
 }
 
 /// The frame of a shadow-height map, and the unshadowed light multiplied by the map's `sun_share`.
@@ -74,7 +54,7 @@ fn by_shadow_heights(
 }
 
 pub fn run(mut args: Args) -> Outcome {
-    let fields = fields(args.folder().as_deref())?;
+    let terrains = terrains(args.folder().as_deref(), SIDES)?;
     let mut gpu = args.open()?;
     println!(
         "{}: a sun {DIAMETER}° wide, {} slices; RMSE against brute force in the same slices, times of frames as medians of {TURNS}, drawn in turn\n",
@@ -87,7 +67,7 @@ pub fn run(mut args: Args) -> Outcome {
     let default = Quality::default();
     let sweep = Quality { method: Method::Sweep, ..default };
     let around = Quality { fuse: Fuse::AimedAround, ..sweep };
-    for (name, field) in &fields {
+    for Terrain { name, field, .. } in &terrains {
         for (border, elevation) in BORDERS.into_iter().flat_map(|b| ELEVATIONS.map(|e| (b, e))) {
             let scene = scene(field, border, elevation);
             let exact = Quality { method: Method::BruteForce, ..default };
@@ -117,7 +97,7 @@ pub fn run(mut args: Args) -> Outcome {
                 let ratio = median(rows.iter().map(|row| row[k] / row[0]).collect());
                 format!("{ratio:.2} x")
             };
-            let border = format!("{border:?}").to_lowercase();
+            let border = border_name(border);
             println!(
                 "| {name} | {border} | {elevation} | {} | {ms:.1} | {} | {} | {} |",
                 errors.join(" | "),
@@ -129,7 +109,7 @@ pub fn run(mut args: Args) -> Outcome {
     }
     // What the default is.
     let plan = plan::picture(
-        &scene(&fields[0].1, Border::Plane, 25.0),
+        &scene(&terrains[0].field, Border::Plane, 25.0),
         &default,
         &gpu.report().limits,
         Picture::default(),

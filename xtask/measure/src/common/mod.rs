@@ -4,6 +4,7 @@ pub mod args;
 pub mod frames;
 pub mod inputs;
 pub mod plot;
+pub mod terrains;
 
 /// What a program returns.
 pub type Outcome = Result<(), Box<dyn std::error::Error>>;
