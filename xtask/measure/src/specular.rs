@@ -125,10 +125,13 @@ pub fn times(args: Args) -> Outcome {
             let mut diffuse = scene.clone();
             diffuse.surface.specular = None;
             let quality = Quality::default();
-            let both = [frame(&mut gpu, &diffuse, &quality)?, frame(&mut gpu, &scene, &quality)?];
-            let rows = new_heights_in_turn(&mut gpu, both, RUNS)?;
-            let [without, with] = [0, 1].map(|i| median(rows.iter().map(|row| row[i]).collect()));
-            let ratio = median(rows.iter().map(|row| row[1] / row[0]).collect());
+            let mut both =
+                [frame(&mut gpu, &diffuse, &quality)?, frame(&mut gpu, &scene, &quality)?];
+            let times = new_heights_in_turn(&gpu, &mut both, &[RUNS; 2])?;
+            both.into_iter().for_each(|frame| gpu.end(frame));
+            let ratios = times[0].iter().zip(&times[1]).map(|(without, with)| with / without);
+            let ratio = median(ratios.collect());
+            let [without, with] = [&times[0], &times[1]].map(|ms| median(ms.clone()));
             println!("| {name} | {exponent} | {without:.2} | {with:.2} | {ratio:.2} |");
         }
     }

@@ -151,30 +151,27 @@ pub fn frames_in_turn(
     Ok(rows.split_off(1))
 }
 
-/// Milliseconds of frames of new heights, drawn in turn: without the passes whose tables depend on lights and settings
-/// alone. Ends the frames.
-pub fn new_heights_in_turn<const N: usize>(
-    gpu: &mut Headless,
-    mut frames: [Frame; N],
-    turns: usize,
-) -> Result<Vec<[f64; N]>> {
-    let needed = frames.each_ref().map(|frame| {
-        let plan = frame.plan();
-        plan.passes_after(plan, &plan.find("heights").into_iter().collect::<Vec<_>>())
-    });
-    for frame in &mut frames {
+/// Milliseconds of frames of new heights, drawn in turn, frame `k` in the first `turns[k]` of all turns: without the passes
+/// whose tables depend on lights and settings alone. A list for each frame.
+pub fn new_heights_in_turn(
+    gpu: &Headless,
+    frames: &mut [Frame],
+    turns: &[usize],
+) -> Result<Vec<Vec<f64>>> {
+    let mut needed = Vec::new();
+    for frame in frames.iter_mut() {
         gpu.draw(frame)?;
+        let plan = frame.plan();
+        let heights: Vec<_> = plan.find("heights").into_iter().collect();
+        needed.push(plan.passes_after(plan, &heights));
     }
-    let mut rows = Vec::new();
-    for _ in 0..turns {
-        let mut row = [0.0; N];
-        for ((ms, frame), passes) in row.iter_mut().zip(&mut frames).zip(&needed) {
-            *ms = total(&gpu.draw_passes(frame, passes)?);
+    let mut times = vec![Vec::new(); frames.len()];
+    for turn in 0..turns.iter().copied().max().unwrap_or(0) {
+        for (k, frame) in frames.iter_mut().enumerate().filter(|(k, _)| turn < turns[*k]) {
+            times[k].push(total(&gpu.draw_passes(frame, &needed[k])?));
         }
-        rows.push(row);
     }
-    frames.into_iter().for_each(|frame| gpu.end(frame));
-    Ok(rows)
+    Ok(times)
 }
 
 /// The light of exact horizons: every crossing in 256 azimuths, by tables of 1024 elevations.
