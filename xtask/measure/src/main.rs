@@ -7,6 +7,7 @@ mod bake;
 mod bounce;
 mod common;
 mod curved;
+mod defaults;
 mod fourier;
 mod gallery;
 mod goals;
@@ -35,7 +36,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 32] = [
+const PROGRAMS: [Program; 33] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -45,6 +46,7 @@ const PROGRAMS: [Program; 32] = [
     ("brdf", "[FOLDER] [-o PICTURE.png]", scatter::brdf::run),
     ("cones", "[-o PICTURE.png]", lights::cones),
     ("curved", "[-o FILE.svg]", curved::run),
+    ("defaults", "[--data FOLDER] [--side N]", defaults::run),
     ("extremes", "DEVICE...", suites::extremes),
     ("field", "NAME SIDE FIELD.npy", gallery::field),
     ("fourier", "[FOLDER]", fourier::run),

@@ -1,0 +1,210 @@
+//! What the default is compared under: lights and bare horizons, with their settings, exact results and goals.
+
+use std::path::Path;
+
+use ridgelight::Result;
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::plan;
+use ridgelight::scene::{Fuse, KeyLight, Lights, Lines, Method, Quality, Scene};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_trade::error::HorizonError;
+
+use super::Errors;
+use crate::common::frames::{Colours, colours, drawn, error, exact_light, frame};
+use crate::common::inputs;
+use crate::common::terrains::Ground;
+
+/// Of a folder's `env/`: a low sun.
+pub const LOW_SUN: &str = "spiaggia_di_mondello_1k.hdr";
+/// Slices of a key light's exact result over those of the default.
+pub const FINER: u32 = 4;
+/// Azimuths of exact horizons: a multiple of those of every setting.
+const FINEST: u32 = 128;
+/// Grid points whose horizons by `--lines exact` are compared with the oracle.
+pub const PICKS: usize = 256;
+/// Turns of settings, and of those that take about ten times as long as the default or more.
+pub const TURNS: usize = 7;
+const FEW_TURNS: usize = 1;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    Sky,
+    Environment,
+    Key,
+    /// Horizons alone, without light.
+    Horizons,
+}
+
+impl Kind {
+    /// The most that the default's errors may be.
+    pub fn goal(self, ground: Ground) -> Errors {
+        match (self, ground) {
+            (Self::Sky, Ground::Steeper) => [0.25, 0.0],
+            (Self::Sky, _) => [0.1, 0.0],
+            (Self::Environment, _) => [0.7, 0.0],
+            (Self::Key, _) => [0.3, 0.0],
+            (Self::Horizons, _) => [0.05, 2.0],
+        }
+    }
+}
+
+/// Settings by their flags.
+pub struct Mode {
+    pub flags: &'static str,
+    pub quality: Quality,
+    pub turns: usize,
+}
+
+pub struct Light {
+    pub name: &'static str,
+    pub kind: Kind,
+    pub lights: Lights,
+}
+
+/// A patch of radiance 1 with its centre 35° south of west; degrees.
+fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
+    let key = KeyLight {
+        azimuth_rad: 215_f64.to_radians(),
+        width_rad: width.to_radians(),
+        elevations_rad: elevations.map(f64::to_radians),
+        radiance: [1.0; 3],
+    };
+    Light { name, kind: Kind::Key, lights: Lights { keys: vec![key], ..Lights::default() } }
+}
+
+/// The default, which is first, and its rivals.
+pub fn modes(kind: Kind) -> Vec<Mode> {
+    let default = Quality::default();
+    let swept = |flags, quality| Mode { flags, quality, turns: TURNS };
+    let slow = |flags, quality| Mode { flags, quality, turns: FEW_TURNS };
+    let mut all = vec![
+        swept("default", default),
+        swept("--fuse aimed", Quality { fuse: Fuse::Aimed, ..default }),
+        swept("--fuse aimed-around", Quality { fuse: Fuse::AimedAround, ..default }),
+        swept("--lines 2", Quality { lines: Lines::TwoCells, ..default }),
+        swept("--lines 1/2", Quality { lines: Lines::HalfCell, ..default }),
+        slow("--method brute-force", Quality { method: Method::BruteForce, ..default }),
+    ];
+    // A key light has slices of its own in place of azimuths. They follow no grid vectors, so `--lines exact` refuses it.
+    if kind == Kind::Key {
+        all.push(swept("--sun-azimuths 4", Quality { sun_azimuths: 4, ..default }));
+        all.push(swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default }));
+    } else {
+        all.push(slow("--lines exact", Quality { lines: Lines::Exact, ..default }));
+        all.push(swept("--azimuths 32", Quality { azimuths: 32, ..default }));
+        all.push(swept("--azimuths 128", Quality { azimuths: 128, ..default }));
+    }
+    all
+}
+
+/// All lights; the second environment only with a folder.
+pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
+    let under = |name, environment| {
+        let lights = Lights { environment: Some(environment), ..Lights::default() };
+        Light { name, kind: Kind::Environment, lights }
+    };
+    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let mut all = vec![
+        Light { name: "sky", kind: Kind::Sky, lights: sky },
+        under("bundled environment", inputs::sky(0.0)?),
+    ];
+    if let Some(folder) = folder {
+        all.push(under("environment with a low sun", inputs::environment_of(folder, LOW_SUN)?));
+    }
+    all.extend([
+        key("key light 4° wide, 20° to 30° high", 4.0, [20.0, 30.0]),
+        key("key light 50° wide, 4° to 16° high", 50.0, [4.0, 16.0]),
+        Light { name: "horizons", kind: Kind::Horizons, lights: Lights::default() },
+    ]);
+    Ok(all)
+}
+
+/// Exact results.
+pub enum Exact {
+    Light(Colours),
+    /// Elevations in `FINEST` even azimuths.
+    Horizons(Vec<f32>),
+}
+
+impl Light {
+    /// A frame of all light, or of all horizons.
+    pub fn frame(&self, gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
+        if self.kind != Kind::Horizons {
+            return frame(gpu, scene, quality);
+        }
+        let Scene { field, surface, .. } = scene;
+        let (limits, azimuths) = (gpu.report().limits, (0, quality.azimuths));
+        let plan = plan::horizons(field, surface.border, quality, &limits, azimuths, false)?;
+        gpu.frame(plan, &[field.heights_m()])
+    }
+
+    /// By brute force. An environment's table and a key light's slices are finer than those of any setting compared, so that the
+    /// errors include those of few azimuths.
+    pub fn exact(&self, gpu: &mut Headless, scene: &Scene) -> Result<Exact> {
+        let exact = Quality { method: Method::BruteForce, ..Quality::default() };
+        Ok(match self.kind {
+            Kind::Sky | Kind::Environment => Exact::Light(exact_light(gpu, scene)?),
+            Kind::Key => {
+                let finer = Quality { sun_azimuths: FINER * exact.sun_azimuths, ..exact };
+                Exact::Light(drawn(gpu, scene, &finer, 0)?.light)
+            }
+            Kind::Horizons => {
+                let finest = Quality { azimuths: FINEST, ..exact };
+                let mut frame = self.frame(gpu, scene, &finest)?;
+                gpu.draw(&mut frame)?;
+                let elevations = gpu.pixels(&frame, 0)?.values;
+                gpu.end(frame);
+                Exact::Horizons(elevations)
+            }
+        })
+    }
+}
+
+impl Exact {
+    /// Errors of a frame that was drawn with some settings.
+    pub fn errors(
+        &self,
+        gpu: &mut Headless,
+        (scene, quality): (&Scene, &Quality),
+        frame: &Frame,
+    ) -> Result<Errors> {
+        let found = gpu.pixels(frame, 0)?;
+        let elevations = match self {
+            Self::Light(exact) => return Ok([error(&colours(&found), exact)?, 0.0]),
+            Self::Horizons(elevations) => elevations,
+        };
+        let Scene { field, surface, .. } = scene;
+        let (rows, cols) = (field.rows(), field.cols());
+        let degrees = if quality.lines == Lines::Exact {
+            let oracle = Oracle::new(field, surface.border);
+            let azimuths = plan::circle_rad(quality, field.cell_m())?;
+            at_picks(&oracle, &azimuths, &found.values, [rows, cols])?
+        } else {
+            // Azimuth k of M is azimuth k · FINEST / M of all.
+            let step = (FINEST / quality.azimuths) as usize;
+            let own = elevations.chunks_exact(rows * cols).step_by(step);
+            let own: Vec<f32> = own.flatten().copied().collect();
+            HorizonError::of(&found.values, &own, rows, cols)?
+        };
+        Ok([degrees.mean_deg, degrees.p999_deg])
+    }
+}
+
+/// Errors of elevations against the oracle: `--lines exact` has azimuths along grid vectors, in which there is no brute force.
+fn at_picks(
+    oracle: &Oracle,
+    azimuths: &[f64],
+    elevations: &[f32],
+    [rows, cols]: [usize; 2],
+) -> Result<HorizonError> {
+    let plane = rows * cols;
+    let picks: Vec<usize> = (1..=PICKS).map(|k| inputs::spread(k, plane)).collect();
+    let (mut found, mut exact) = (Vec::new(), Vec::new());
+    for (layer, phi) in azimuths.iter().enumerate() {
+        for pick in &picks {
+            found.push(elevations[layer * plane + pick]);
+            exact.push(oracle.elevation_rad(pick / cols, pick % cols, *phi));
+        }
+    }
+    HorizonError::of(&found, &exact, 1, picks.len())
+}

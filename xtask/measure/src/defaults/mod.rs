@@ -1,0 +1,119 @@
+//! The default settings beside others: errors against exact horizons and times, on all terrains and borders and under each kind of
+//! light; whether the default meets its goals, and whether another setting is both faster and at least as accurate.
+
+mod light;
+mod summary;
+
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::scene::{Quality, Scene};
+
+use crate::common::args::Args;
+use crate::common::frames::{device, new_heights_in_turn};
+use crate::common::terrains::{BORDERS, OF_A_FOLDER, border_name, terrains};
+use crate::common::{Outcome, head, inputs, median};
+use light::{FINER, Kind, LOW_SUN, Light, PICKS, TURNS, modes};
+use summary::Summary;
+
+/// Of light: the relative RMSE, %, and 0. Of horizons: mean and 99.9th percentile, degrees.
+pub type Errors = [f64; 2];
+
+/// One setting over one terrain, with one border, under one light.
+pub struct Row {
+    flags: &'static str,
+    errors: Errors,
+    ms: f64,
+    /// Its time over that of the default.
+    time: f64,
+}
+
+impl Row {
+    /// Errors and time in the decimals that are printed: smaller differences are rounding and noise.
+    fn printed(&self) -> ([i64; 2], i64) {
+        (self.errors.map(|e| (1000.0 * e).round() as i64), (100.0 * self.time).round() as i64)
+    }
+
+    /// Whether it is faster than another row and at least as accurate.
+    fn beats(&self, other: &Row) -> bool {
+        let ((errors, time), (others, others_time)) = (self.printed(), other.printed());
+        time < others_time && errors[0] <= others[0] && errors[1] <= others[1]
+    }
+}
+
+/// Errors and times of all settings, the default first.
+fn compare(gpu: &mut Headless, light: &Light, scene: &Scene) -> Result<Vec<Row>> {
+    let exact = light.exact(gpu, scene)?;
+    let modes = modes(light.kind);
+    let mut frames = Vec::new();
+    for mode in &modes {
+        frames.push(light.frame(gpu, scene, &mode.quality)?);
+    }
+    let turns: Vec<usize> = modes.iter().map(|mode| mode.turns).collect();
+    let times = new_heights_in_turn(gpu, &mut frames, &turns)?;
+    let times: Vec<f64> = times.into_iter().map(median).collect();
+    let mut rows = Vec::new();
+    for ((mode, frame), ms) in modes.iter().zip(frames).zip(&times) {
+        let errors = exact.errors(gpu, (scene, &mode.quality), &frame)?;
+        gpu.end(frame);
+        rows.push(Row { flags: mode.flags, errors, ms: *ms, time: ms / times[0] });
+    }
+    Ok(rows)
+}
+
+pub fn run(mut args: Args) -> Outcome {
+    let (side, folder) = (args.number("--side", 128_usize)?, args.path("--data")?);
+    let (terrains, lights) =
+        (terrains(folder.as_deref(), [side; 2])?, light::all(folder.as_deref())?);
+    let mut gpu = args.open()?;
+    let Quality { azimuths, sun_azimuths, .. } = Quality::default();
+    println!(
+        "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices of a key light; medians of {TURNS}, drawn in \
+         turn (exact lines and brute force once)\n\
+         Error of light: RMSE relative to the mean, %, against brute force in 256 azimuths and tables of 1024 elevations; key lights: \
+         against brute force in {} slices; `--lines exact` refuses key lights\n\
+         Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
+         f64 oracle in theirs at {PICKS} grid points\n\
+         Frontier: no faster setting of this table has errors that are at most as large, as printed",
+        device(&gpu),
+        FINER * sun_azimuths
+    );
+    if folder.is_none() {
+        println!(
+            "Left out without --data FOLDER: {} fields and 1 environment ({}, {LOW_SUN})",
+            OF_A_FOLDER.len(),
+            OF_A_FOLDER.map(|(name, _)| name).join(", ")
+        );
+    }
+    println!();
+    head(
+        "| field | border | light | settings | error % or mean ° | 99.9 % ° | ms | time over the default | frontier |",
+    );
+    let mut summary = Summary::default();
+    for terrain in &terrains {
+        for (border, light) in BORDERS.iter().flat_map(|b| lights.iter().map(move |l| (*b, l))) {
+            let mut scene = inputs::lit_by(terrain.field.clone(), light.lights.clone());
+            scene.surface.border = border;
+            let rows = compare(&mut gpu, light, &scene)?;
+            let place = format!("{} | {} | {}", terrain.name, border_name(border), light.name);
+            for row in &rows {
+                let [error, high] = row.errors;
+                let high = match light.kind {
+                    Kind::Horizons => format!("{high:.3}"),
+                    _ => "-".to_owned(),
+                };
+                let is_best = !rows.iter().any(|other| other.beats(row));
+                println!(
+                    "| {place} | {} | {error:.3} | {high} | {:.2} | {:.2} | {} |",
+                    row.flags,
+                    row.ms,
+                    row.time,
+                    if is_best { "yes" } else { "no" }
+                );
+            }
+            summary.add(light, terrain.ground, &rows);
+        }
+    }
+    println!();
+    summary.print();
+    Ok(())
+}
