@@ -2,11 +2,12 @@
 //! settings.
 //!
 //! FOLDER has height fields in `height/` and environments in `env/`. Every field (its middle N²,
-//! 256) is paired with every environment and with skies and suns. `--fit` measures the pairs whose
-//! places have an even sum and prints the table of `crates/trade/src/auto/fitted.rs`. The report
-//! uses the other pairs: every field and every light is in both halves, and no pair is. For each
-//! error it prints the choice, its true error, and its time over that of the fastest settings that
-//! truly meet the goal. These are the best of a `trade` walk of S (20) seconds and of all choices.
+//! 256) is paired with every environment and with skies, suns, key lights and sphere lights. `--fit`
+//! measures the pairs whose places have an even sum and prints the table of
+//! `crates/trade/src/auto/fitted.rs`. The report uses the other pairs, with all three borders: every
+//! field and every light is in both halves, and no pair is. For each error it prints the choice, its
+//! true error, and its time over that of the fastest settings that truly meet the goal. These are
+//! the best of a `trade` walk of S (20) seconds and of all choices.
 //! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4.
 
 mod fit;
@@ -16,13 +17,17 @@ use std::path::{Path, PathBuf};
 
 use ridgelight::gpu::Headless;
 use ridgelight::plan::Picture;
-use ridgelight::scene::{Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular};
+use ridgelight::scene::{
+    Albedo, Border, HeightField, KeyLight, Lights, PhongSpecular, Quality, Scene, Specular,
+    SphereLight,
+};
 use ridgelight::{Error, Result};
 use ridgelight_io::{HeightOptions, read_environment, read_heights};
 use ridgelight_trade::auto::Drawn;
 
 use crate::common::args::Args;
 use crate::common::frames::drawn_as;
+use crate::common::terrains::BORDERS;
 use crate::common::{Outcome, inputs};
 
 /// A file without a cell size gets one that makes its relief this share of its side.
@@ -54,9 +59,25 @@ fn cropped(field: &HeightField, side: usize) -> Result<HeightField> {
     HeightField::new(rows, cols, &heights, cell_m, part.voids().map(<[bool]>::to_vec))
 }
 
-/// Every environment, the last also rotated, and skies with and without a sun. Similar lights are an
-/// even number of places apart, so they are in the same half for each field.
-fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
+/// Two sphere lights over a field: one wide and high over its middle, one small beside its highest ground.
+fn sphere_lights(field: &HeightField) -> Vec<SphereLight> {
+    let [width_m, depth_m] = [
+        field.cell_m()[0] * (field.cols() - 1) as f64,
+        field.cell_m()[1] * (field.rows() - 1) as f64,
+    ];
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let highest_m = field.base_m() + f64::from(highest_m);
+    let at = |x: f64, y: f64, over: f64, radius: f64, radiance: f32| SphereLight {
+        position_m: [x * width_m, y * depth_m, highest_m + over * width_m],
+        radius_m: radius * width_m,
+        radiance: [radiance; 3],
+    };
+    vec![at(0.5, 0.5, 0.3, 0.1, 20.0), at(0.2, 0.7, 0.05, 0.02, 100.0)]
+}
+
+/// Every environment, the last also rotated, and skies alone, with a sun, with a key light and with the sphere lights of
+/// `field`. Similar lights are an even number of places apart, so they are in the same half for each field.
+fn lights(folder: &Path, field: &HeightField) -> Result<Vec<(String, Lights)>> {
     let sky = |radiance: f32| Lights { sky: Some([radiance; 3]), ..Lights::default() };
     let sun = |elevation_rad: f64, irradiance: f32| {
         vec![inputs::sun(2.5_f64.to_degrees(), elevation_rad.to_degrees(), [irradiance; 3])]
@@ -76,6 +97,15 @@ fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
     }
     all.push(("sky".to_owned(), sky(1.0)));
     all.push(("low sun".to_owned(), Lights { suns: sun(0.14, 4.0), ..sky(0.2) }));
+    let keys = vec![KeyLight {
+        azimuth_rad: 2.5,
+        width_rad: 0.2,
+        elevations_rad: [0.3, 0.5],
+        radiance: [50.0; 3],
+    }];
+    all.push(("sky and key light".to_owned(), Lights { keys, ..sky(0.5) }));
+    let sphere_lights = sphere_lights(field);
+    all.push(("sky and sphere lights".to_owned(), Lights { sphere_lights, ..sky(0.2) }));
     Ok(all)
 }
 
@@ -86,15 +116,18 @@ fn scenes(
     is_fitted: bool,
     exponent: Option<f32>,
 ) -> Result<Vec<(String, Scene)>> {
-    let lights = lights(folder)?;
     let mut all = Vec::new();
     // From the last: the steepest of the data, which takes longest, is the first by name.
     for (i, path) in listed(&folder.join("height"))?.iter().enumerate().rev() {
         let field = cropped(&read_heights(path, &HeightOptions::default())?, side)?;
-        for (j, (light, lights)) in lights.iter().enumerate() {
+        for (j, (light, lights)) in lights(folder, &field)?.into_iter().enumerate() {
             if ((i + j) % 2 == 0) == is_fitted {
-                let label = format!("{} | {light}", name(path));
-                let mut scene = inputs::lit_by(field.clone(), lights.clone());
+                // The table is of level ground around each field. The pairs of the report take the borders in turn.
+                let border = if is_fitted { Border::Plane } else { BORDERS[(i + j / 2) % 3] };
+                let border_name = format!("{border:?}").to_lowercase();
+                let label = format!("{} | {light}, {border_name} border", name(path));
+                let mut scene = inputs::lit_by(field.clone(), lights);
+                scene.surface.border = border;
                 if let Some(exponent) = exponent {
                     let phong = PhongSpecular { exponent, scale: 0.4 };
                     scene.surface.specular = Some(Specular::Constant(phong));
