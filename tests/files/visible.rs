@@ -1,8 +1,7 @@
-//! Visible points, written and read back for the same field only.
+//! Visible points from points and from words, and the field that they belong to.
 
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
 use ridgelight_cpu::visible_points::visible_points;
-use ridgelight_io::{read_visible_points, write_visible_points};
 
 use super::one_sentence;
 
@@ -15,20 +14,19 @@ fn waves(rows: usize, cols: usize, cell: f64) -> HeightField {
 /// A byte an axis and two; with sky and ground among the points.
 #[test]
 fn visible_points_round_trip() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("points.npz");
     for (rows, cols) in [(5, 7), (2, 256), (1, 1)] {
         let (field, border) = (waves(rows, cols, 1.0), Border::Plane);
         let directions = Directions::fibonacci(9, -1.0, 2).expect("directions");
         let visible = visible_points(&field, border, &directions);
         let texels = rows * cols;
         assert!(visible.contains(&VisiblePoint::Sky) && visible.contains(&VisiblePoint::Ground));
-        let points = VisiblePoints::from_points(&field, border, directions, &visible).unwrap();
+        let of = directions.clone();
+        let points = VisiblePoints::from_points(&field, border, of, &visible).unwrap();
         for (i, point) in visible.iter().enumerate() {
             assert_eq!(points.point(i / texels, i % texels), *point);
         }
-        write_visible_points(&path, &points).unwrap();
-        assert_eq!(read_visible_points(&path, &field, border).unwrap(), points);
+        let words = points.words().to_vec();
+        assert_eq!(VisiblePoints::new(&field, border, directions, words).unwrap(), points);
     }
 }
 
@@ -36,8 +34,6 @@ fn visible_points_round_trip() {
 /// column.
 #[test]
 fn the_last_texel_of_a_small_field_is_no_void_marker() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("points.npz");
     for side in [255, 256] {
         let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None).unwrap();
         let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
@@ -46,24 +42,18 @@ fn the_last_texel_of_a_small_field_is_no_void_marker() {
         let visible: Vec<_> = (0..5 * side * side).map(|i| kinds[i % 5]).collect();
         let points = VisiblePoints::from_points(&field, Border::Plane, directions, &visible)
             .expect("points");
-        write_visible_points(&path, &points).unwrap();
-        let read = read_visible_points(&path, &field, Border::Plane).unwrap();
-        assert_eq!(read, points);
         for (i, point) in visible.iter().enumerate() {
-            assert_eq!(read.point(i / (side * side), i % (side * side)), *point);
+            assert_eq!(points.point(i / (side * side), i % (side * side)), *point);
         }
     }
 }
 
 #[test]
 fn points_of_another_field_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("points.npz");
     let (field, border) = (waves(5, 7, 1.0), Border::Open);
     let directions = Directions::fibonacci(4, -1.0, 0).expect("directions");
     let visible = visible_points(&field, border, &directions);
     let points = VisiblePoints::from_points(&field, border, directions, &visible).unwrap();
-    write_visible_points(&path, &points).unwrap();
     let mut heights: Vec<f64> = field.heights_m().iter().map(|h| f64::from(*h)).collect();
     heights[3] += 1.0;
     let raised = HeightField::new(5, 7, &heights, [1.0; 2], None).expect("a field");
@@ -73,19 +63,11 @@ fn points_of_another_field_are_refused() {
         (&waves(7, 5, 1.0), border),
         (&field, Border::Periodic),
     ] {
-        let said = read_visible_points(&path, other, border).unwrap_err().to_string();
-        one_sentence(&said, "points.npz");
+        let said = points.check(other, border).unwrap_err().to_string();
+        one_sentence(&said, "visible points");
         assert!(said.contains("hash"), "{said}");
-        assert!(points.check(other, border).is_err());
     }
     assert!(points.check(&field, border).is_ok());
-    // Half a file, and no archive at all.
-    let bytes = std::fs::read(&path).unwrap();
-    for part in [&bytes[..bytes.len() / 2], b"no archive"] {
-        std::fs::write(&path, part).unwrap();
-        let said = read_visible_points(&path, &field, border).unwrap_err().to_string();
-        one_sentence(&said, "points.npz");
-    }
 }
 
 #[test]

@@ -22,8 +22,7 @@ mod png;
 mod textures;
 
 pub use arrays::{
-    NpyWriter, Planes, parse_planes, read_planes, read_visible_points, write_npy_f32,
-    write_npy_heights, write_visible_points,
+    NpyWriter, Planes, parse_planes, read_planes, write_npy_f32, write_npy_heights,
 };
 pub use atomic::{
     ResultFolder, Written, abandon_unfinished, check_room, check_writable, write_json, write_text,

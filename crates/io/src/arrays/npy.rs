@@ -81,11 +81,6 @@ impl<'a> Array<'a> {
         Ok(Self { shape, kind, size, big_endian, fortran, data })
     }
 
-    /// Bytes per value of an unsigned type.
-    pub fn unsigned(&self) -> Option<usize> {
-        (self.kind == b'u').then_some(self.size)
-    }
-
     /// Some of its values as a raster of unknown cell size.
     fn raster(&self, rows: usize, cols: usize, values: Vec<f64>) -> Raster {
         // 16- or 32-bit floats.
@@ -192,7 +187,7 @@ pub(crate) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster>
 ///
 /// # Errors
 /// More dimensions than a header holds.
-pub(crate) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
+fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
     let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
     let mut text = format!(
         "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",

@@ -8,14 +8,14 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 use zip::ZipArchive;
 
-pub(crate) type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
+type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 /// Members that hold heights, in order of preference; else the only 2-D array is used.
 const HEIGHTS: [&str; 4] = ["elevation", "heights", "height", "z"];
 
 /// # Errors
 /// Bytes that are no complete archive.
-pub(crate) fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
+fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
     ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
         Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
     })
@@ -104,12 +104,7 @@ fn only_plane(path: &Path, archive: &mut Archive, held: usize, names: &[String])
 
 /// A member's bytes. A claimed size beyond what the file could hold is refused, as is a member
 /// larger than its claim.
-pub(crate) fn member(
-    path: &Path,
-    archive: &mut Archive,
-    held: usize,
-    name: &str,
-) -> Result<Vec<u8>> {
+fn member(path: &Path, archive: &mut Archive, held: usize, name: &str) -> Result<Vec<u8>> {
     let place = printable(name);
     let wrong =
         |found: String| Error::file(path, place.as_str(), found, "a stored or deflated array");
