@@ -72,7 +72,6 @@ pub fn lit_from(
     };
     let none = vec![[0.0; 3]; scene.field.heights_m().len()];
     let contents = plan::scatter_inputs(&plan, scene, points, &none)?;
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
         for light in lights {
             let mut radiance = facets.lit_from(light);
@@ -126,7 +125,6 @@ fn lit_with_specular(
                 }
                 None => {
                     let contents = plan::scatter_inputs(&plan, &lit, points, &none)?;
-                    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
                     &mut kept.insert((some.len(), gpu.frame(plan, &contents)?)).1
                 }
             };

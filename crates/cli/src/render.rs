@@ -128,11 +128,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         .as_ref()
         .map(|camera_view| camera_view.view(&scene, &plan, &limits))
         .transpose()?;
-    let contents = plan::picture_inputs(&scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
     let (times, pixels, camera_pixels, mut metadata) =
-        gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.with_frame(plan, &plan::picture_inputs(&scene), |gpu, frame| {
             let mut times = gpu.draw(frame)?;
             let pixels: Vec<Pixels> =
                 (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;

@@ -55,7 +55,6 @@ impl Headless {
     ) -> Result<Vec<[f32; 3]>> {
         let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
         let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         self.with_frame(plan, &contents, |gpu, frame| {
             gpu.draw_counted(frame)?;
             gpu.colours(frame)
@@ -78,7 +77,6 @@ impl Headless {
         for (first, views) in views.chunks(at_once).enumerate() {
             let plan = plan::scatter_views(scene, points.directions(), scatter, views, limits)?;
             let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
-            let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
             let light = self.with_frame(plan, &contents, |gpu, frame| {
                 gpu.draw_counted(frame)?;
                 gpu.colours(frame)

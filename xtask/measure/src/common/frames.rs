@@ -18,13 +18,9 @@ pub fn device(gpu: &Headless) -> String {
     format!("{}, {}", gpu.report().name, gpu.report().driver)
 }
 
-pub fn slices(all: &[Vec<f32>]) -> Vec<&[f32]> {
-    all.iter().map(Vec::as_slice).collect()
-}
-
 pub fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
     let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
-    gpu.frame(plan, &slices(&plan::picture_inputs(scene)))
+    gpu.frame(plan, &plan::picture_inputs(scene))
 }
 
 /// `work` on a picture's frame.
@@ -36,7 +32,7 @@ pub fn with_picture<T>(
     work: impl FnOnce(&mut Headless, &mut Frame) -> Result<T>,
 ) -> Result<T> {
     let plan = plan::picture(scene, quality, &gpu.report().limits, wanted)?;
-    gpu.with_frame(plan, &slices(&plan::picture_inputs(scene)), work)
+    gpu.with_frame(plan, &plan::picture_inputs(scene), work)
 }
 
 /// No more runs once they took so long together.
@@ -222,7 +218,7 @@ pub fn traced_at(
     let is_path = |p: &usize| plan.passes[*p].name() == "path_trace";
     let paths: Vec<usize> = (0..plan.passes.len()).filter(is_path).collect();
     let lost = plan.find("lost_rays");
-    gpu.with_frame(plan, &slices(&plan::reference_inputs(scene)), |gpu, frame| {
+    gpu.with_frame(plan, &plan::reference_inputs(scene), |gpu, frame| {
         gpu.draw(frame)?;
         let (mut done, mut all) = (1, Vec::new());
         for stop in stops {

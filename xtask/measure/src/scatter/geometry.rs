@@ -6,8 +6,6 @@ use ridgelight::plan::{self, View, ViewOptions};
 use ridgelight::scene::{Albedo, Border, Camera, HeightField, Lens, Lights, Normals, Scene, Sun};
 use ridgelight::{Error, Result};
 
-use crate::common::frames::slices;
-
 /// Pixels along the picture's edges.
 const SIDE: u32 = 400;
 
@@ -67,8 +65,7 @@ impl Geometry {
         let lights = Lights { suns: vec![sun(light)], ..Lights::default() };
         let scene = Scene { field, surface, lights };
         let plan = plan::reference(&scene, bounces, Normals::Flat, None, 1, &gpu.report().limits)?;
-        let contents = plan::reference_inputs(&scene);
-        let mut frame = gpu.frame(plan, &slices(&contents))?;
+        let mut frame = gpu.frame(plan, &plan::reference_inputs(&scene))?;
         gpu.draw(&mut frame)?;
         Ok(Self { scene, frame, period_m, repeats, middle_m })
     }

@@ -93,9 +93,7 @@ pub fn direct_plan(job: &Job, scene: &Scene, limits: &Limits) -> Result<Plan> {
 
 pub fn direct(gpu: &mut Headless, job: &Job, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     let plan = direct_plan(job, scene, &job.limits)?;
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
+    gpu.with_frame(plan, &plan::picture_inputs(scene), |gpu, frame| {
         gpu.draw_counted(frame)?;
         let pixels = gpu.pixels(frame, 0)?;
         crate::render::check_finite(&pixels, &scene.field)?;

@@ -91,9 +91,7 @@ impl Compare {
                 plan::reference_in_bands(scene, bounces, normals, eye_m, 0, limits, BAND_ROWS)?;
             let is_band = |pass: &plan::Pass| pass.name() == "path_trace";
             let first_band = plan.passes.iter().position(is_band).unwrap_or(0);
-            let contents = plan::reference_inputs(scene);
-            let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-            let frame = screen.frame(plan, &contents)?;
+            let frame = screen.frame(plan, &plan::reference_inputs(scene))?;
             self.path_traced =
                 Some(PathTraced { frame, first_band, next: 0, bands: 1, batches: 0 });
             self.is_reference_stale = false;

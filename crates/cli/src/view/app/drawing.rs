@@ -310,9 +310,7 @@ pub(super) fn replan(
     if let Some(old) = place.take() {
         screen.end(old)?;
     }
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    *place = Some(screen.frame(plan, &contents)?);
+    *place = Some(screen.frame(plan, &plan::picture_inputs(scene))?);
     Ok(true)
 }
 
