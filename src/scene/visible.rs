@@ -12,7 +12,9 @@ use crate::{Error, Result};
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisiblePoints {
     directions: Directions,
+    /// Rows and columns of the field.
     size: [usize; 2],
+    /// [`HeightField::hash`] of the field.
     field_hash: u64,
     words: Vec<u32>,
 }
@@ -162,16 +164,6 @@ impl VisiblePoints {
     /// The directions, in the order of the points.
     pub fn directions(&self) -> &Directions {
         &self.directions
-    }
-
-    /// Rows and columns of the field.
-    pub fn size(&self) -> [usize; 2] {
-        self.size
-    }
-
-    /// [`HeightField::hash`] of the field of the points.
-    pub fn field_hash(&self) -> u64 {
-        self.field_hash
     }
 
     /// The words, layer after layer, row after row.
