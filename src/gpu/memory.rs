@@ -299,3 +299,16 @@ pub fn whole(layers: u32) -> vk::ImageSubresourceRange {
         layer_count: layers,
     }
 }
+
+/// A copy between a buffer, its rows consecutive, and all of a colour image of these columns, rows and layers.
+pub fn region([width, height, layer_count]: [u32; 3]) -> vk::BufferImageCopy {
+    let aspect_mask = vk::ImageAspectFlags::COLOR;
+    vk::BufferImageCopy::default()
+        .image_subresource(vk::ImageSubresourceLayers {
+            aspect_mask,
+            mip_level: 0,
+            base_array_layer: 0,
+            layer_count,
+        })
+        .image_extent(vk::Extent3D { width, height, depth: 1 })
+}

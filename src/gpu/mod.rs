@@ -114,7 +114,9 @@ pub use headless::look::view_inputs;
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
 #[doc(hidden)]
-pub use memory::{Backed, whole};
+pub use memory::{Backed, region, whole};
+#[doc(hidden)]
+pub use renderer::transition;
 pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing, Work};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
 #[doc(hidden)]

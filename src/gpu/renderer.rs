@@ -21,8 +21,7 @@ use crate::{Error, Result};
 
 pub use buffers::{BufferArg, InputArg};
 pub(super) use checks::{check_stage, check_state};
-pub(super) use images::transition;
-pub use images::{ImageArg, ImageState};
+pub use images::{ImageArg, ImageState, transition};
 
 /// GPU time of one pass.
 #[derive(Clone, Debug, PartialEq)]

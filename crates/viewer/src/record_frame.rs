@@ -6,7 +6,8 @@ use super::drawer::{COPIED, Drawer};
 use super::slot::{Slot, fitting};
 use super::{Overlay, Pane, PresentOptions, Screen, Viewpoint};
 use ridgelight::gpu::{
-    Backed, Frame, Headless, ImageArg, ImageState, MemoryUse, Work, failed, whole,
+    Backed, Frame, Headless, ImageArg, ImageState, MemoryUse, Work, failed, region, transition,
+    whole,
 };
 use ridgelight::plan::Rectangle;
 use ridgelight::{Error, Result};
@@ -169,7 +170,7 @@ impl Screen {
         frame: &Frame,
     ) {
         let offset = vk::Offset3D { x: at.col as i32, y: at.row as i32, z: 0 };
-        let region = [copied([at.cols, at.rows]).image_offset(offset)];
+        let region = [region([at.cols, at.rows, 1]).image_offset(offset)];
         let general = vk::ImageLayout::GENERAL;
         let to = frame.inputs()[0].image;
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
@@ -211,7 +212,8 @@ impl Screen {
             change(FILLED, FILLED);
         }
         for (pane, drawer) in panes.iter().zip(&self.drawers) {
-            let region = copied(pane.size());
+            let [width, height] = pane.size();
+            let region = region([width, height, 1]);
             let (size, layers) = (region.image_extent, region.image_subresource);
             let copy = [vk::ImageCopy::default()
                 .src_subresource(layers)
@@ -240,7 +242,7 @@ impl Screen {
             let device = &self.gpu.host().device;
             // SAFETY: the buffer holds a picture.
             unsafe {
-                let region = [copied(size)];
+                let region = [region([size[0], size[1], 1])];
                 device.cmd_copy_image_to_buffer(commands, to, READ.layout, back.buffer, &region);
                 device.cmd_pipeline_barrier2(commands, &info);
             }
@@ -284,17 +286,7 @@ impl Screen {
         from: ImageState,
         to: ImageState,
     ) {
-        let barrier = [vk::ImageMemoryBarrier2::default()
-            .src_stage_mask(from.stage)
-            .src_access_mask(from.access)
-            .dst_stage_mask(to.stage)
-            .dst_access_mask(to.access)
-            .old_layout(from.layout)
-            .new_layout(to.layout)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .image(image)
-            .subresource_range(whole(1))];
+        let barrier = [transition(image, 1, from, to)];
         let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
         // SAFETY: `commands` is being recorded; the image is the window's, acquired.
         unsafe { self.gpu.host().device.cmd_pipeline_barrier2(commands, &info) };
@@ -434,18 +426,6 @@ fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// All of an image of one layer, rows packed.
-fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
-    vk::BufferImageCopy::default()
-        .image_subresource(vk::ImageSubresourceLayers {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            mip_level: 0,
-            base_array_layer: 0,
-            layer_count: 1,
-        })
-        .image_extent(vk::Extent3D { width, height, depth: 1 })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 use ash::vk;
 
-use crate::gpu::Headless;
 use crate::gpu::allocator::MemoryUse;
 use crate::gpu::barriers::Barriers;
 use crate::gpu::headless::frame::Owned;
-use crate::gpu::memory::{Backed, whole};
+use crate::gpu::memory::{Backed, region};
+use crate::gpu::{Headless, ImageArg, ImageState};
 use crate::{Error, Result};
 
 /// Largest staging buffer, in bytes.
@@ -12,16 +12,9 @@ const STAGING_BYTES: u64 = 64 << 20;
 
 impl Headless {
     pub(in crate::gpu) fn to_general(&self, commands: vk::CommandBuffer, image: &Owned) {
-        let barrier = [vk::ImageMemoryBarrier2::default()
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-            .new_layout(vk::ImageLayout::GENERAL)
-            .image(image.backed.image)
-            .subresource_range(whole(image.extent[2]))];
-        // SAFETY: `commands` is being recorded; the image is ours and its contents are not needed.
-        unsafe { Barriers::default().images(&barrier).record(&self.host().device, commands) };
+        // Its contents are not needed.
+        let before = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::ANY_USE };
+        self.transition(commands, &ImageArg { before, ..image.arg() });
     }
 
     /// Copies between an image in GENERAL and host memory, several whole rows at a time.
@@ -80,15 +73,9 @@ impl Headless {
         if to_image {
             touch(staging)?;
         }
-        let region = [vk::BufferImageCopy::default()
-            .image_subresource(vk::ImageSubresourceLayers {
-                aspect_mask: vk::ImageAspectFlags::COLOR,
-                mip_level: 0,
-                base_array_layer: layer,
-                layer_count: 1,
-            })
-            .image_offset(vk::Offset3D { x: 0, y: top as i32, z: 0 })
-            .image_extent(vk::Extent3D { width: image.extent[0], height: count, depth: 1 })];
+        let mut region = [region([image.extent[0], count, 1])];
+        region[0].image_subresource.base_array_layer = layer;
+        region[0].image_offset.y = top as i32;
         let (image, buffer) = (image.backed.image, staging.buffer);
         let barrier = [vk::MemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)

@@ -6,7 +6,7 @@ use crate::gpu::allocator::MemoryUse;
 use crate::gpu::barriers::Barriers;
 use crate::gpu::failed;
 use crate::gpu::headless::frame::Owned;
-use crate::gpu::memory::{Backed, DEPTH, whole_attachment};
+use crate::gpu::memory::{Backed, DEPTH, region, whole_attachment};
 use crate::gpu::{
     Frame, Headless, ImageArg, ImageState, Timing, ViewInputs, ViewOutputs, ViewRenderer,
 };
@@ -176,15 +176,8 @@ impl Headless {
 
     fn copy_to_host(&self, commands: vk::CommandBuffer, image: &ImageArg, buffer: vk::Buffer) {
         let [width, height, _] = image.extent;
-        let range = whole_attachment(image.format);
-        let region = [vk::BufferImageCopy::default()
-            .image_subresource(vk::ImageSubresourceLayers {
-                aspect_mask: range.aspect_mask,
-                mip_level: 0,
-                base_array_layer: 0,
-                layer_count: 1,
-            })
-            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let mut region = [region([width, height, 1])];
+        region[0].image_subresource.aspect_mask = whole_attachment(image.format).aspect_mask;
         let written = [vk::MemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::COPY)
             .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)

@@ -5,7 +5,8 @@ use ash::vk;
 use crate::gpu::allocator::MemoryUse;
 use crate::gpu::barriers::Barriers;
 use crate::gpu::headless::frame::Owned;
-use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
+use crate::gpu::memory::region;
+use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, failed, transition};
 use crate::graph::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 
@@ -50,7 +51,6 @@ impl Headless {
     ///
     /// # Errors
     /// A resource that the plan does not have, or a device out of memory: all of it is staged at once.
-    /// A resource that the plan does not have, or a device out of memory: all of it is staged at once.
     pub fn read(&mut self, frame: &Frame, id: ResourceId) -> Result<Vec<u32>> {
         let (image, buffer) = frame.handles(id).ok_or_else(|| {
             let count = frame.plan().resources.len();
@@ -77,14 +77,7 @@ impl Headless {
                 wait.record(device, commands);
                 match kind {
                     Kind::Image { width, height, layers, .. } => {
-                        let region = [vk::BufferImageCopy::default()
-                            .image_subresource(vk::ImageSubresourceLayers {
-                                aspect_mask: vk::ImageAspectFlags::COLOR,
-                                mip_level: 0,
-                                base_array_layer: 0,
-                                layer_count: layers,
-                            })
-                            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+                        let region = [region([width, height, layers])];
                         let layout = vk::ImageLayout::GENERAL;
                         device.cmd_copy_image_to_buffer(commands, image, layout, to, &region);
                     }
@@ -132,16 +125,8 @@ impl Headless {
     /// Changes an image from state `before` to state `after`, within `commands`, which is being recorded
     /// ([`run`](Self::run)).
     pub fn transition(&self, commands: vk::CommandBuffer, image: &ImageArg) {
-        let ImageArg { before, after, .. } = *image;
-        let barrier = [vk::ImageMemoryBarrier2::default()
-            .src_stage_mask(before.stage)
-            .src_access_mask(before.access)
-            .dst_stage_mask(after.stage)
-            .dst_access_mask(after.access)
-            .old_layout(before.layout)
-            .new_layout(after.layout)
-            .image(image.image)
-            .subresource_range(memory::whole(image.extent[2]))];
+        let ImageArg { before, after, extent: [.., layers], .. } = *image;
+        let barrier = [transition(image.image, layers, before, after)];
         // SAFETY: the caller guarantees that `commands` is being recorded and that the image is alive and in
         // its state `before`.
         unsafe { Barriers::default().images(&barrier).record(&self.host().device, commands) };

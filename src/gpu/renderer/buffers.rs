@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use super::super::memory::region;
 use super::{ImageArg, ImageState, Renderer};
 use crate::graph::{Kind, Owner, Rectangle, Resource, ResourceId};
 use crate::{Error, Result};
@@ -140,17 +141,10 @@ impl Renderer {
             let all = Rectangle { col: 0, row: 0, cols: cols as u32, rows: rows as u32 };
             let part = edited.filter(|_| resource.name == "heights").unwrap_or(all);
             let corner = u64::from(part.row) * row + u64::from(part.col) * texel;
-            let region = vk::BufferImageCopy::default()
+            let region = region([part.cols, part.rows, 1])
                 .buffer_offset(arg.offset + corner)
                 .buffer_row_length((row / texel) as u32)
-                .image_subresource(vk::ImageSubresourceLayers {
-                    aspect_mask: vk::ImageAspectFlags::COLOR,
-                    mip_level: 0,
-                    base_array_layer: 0,
-                    layer_count: 1,
-                })
-                .image_offset(vk::Offset3D { x: part.col as i32, y: part.row as i32, z: 0 })
-                .image_extent(vk::Extent3D { width: part.cols, height: part.rows, depth: 1 });
+                .image_offset(vk::Offset3D { x: part.col as i32, y: part.row as i32, z: 0 });
             let image = self.internal(ResourceId(i))?.image;
             Some(Taken { arg, image, region, range })
         };

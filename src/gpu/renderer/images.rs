@@ -54,7 +54,7 @@ pub struct ImageArg {
 }
 
 /// A barrier over a whole image.
-pub(in crate::gpu) fn transition<'a>(
+pub fn transition<'a>(
     image: vk::Image,
     layers: u32,
     from: ImageState,
