@@ -20,7 +20,9 @@ use crate::plan::Plan;
 use crate::{Error, Result};
 
 pub use buffers::{BufferArg, InputArg};
-pub(super) use checks::{check_stage, check_state};
+pub(super) use checks::{
+    check_apart, check_contents, check_image, check_left, check_stage, check_state,
+};
 pub use images::{ImageArg, ImageState, transition};
 
 /// GPU time of one pass.

@@ -59,18 +59,32 @@ impl Renderer {
         for (arg, (_, resource)) in outputs.iter().zip(self.plan.outputs()) {
             self.check_image(arg, resource)?;
         }
-        self.check_apart(inputs, outputs)
+        let names = self.plan.inputs().chain(self.plan.outputs()).map(|(_, r)| r.name.as_str());
+        let inputs = inputs.iter().map(|input| match input {
+            InputArg::Image(image) => Some(image),
+            InputArg::Buffer(_) => None,
+        });
+        let all = names.zip(inputs.chain(outputs.iter().map(Some)));
+        check_apart(all.filter_map(|(name, image)| Some((name, image?))))
     }
 
     fn check_image(&self, arg: &ImageArg, resource: &Resource) -> Result<()> {
-        check_image(arg, resource, &self.formats(resource))?;
-        check_supported(&resource.name, "stage before", arg.before.stage, self.family)?;
-        match resource.owner {
-            Owner::Output => {
-                check_supported(&resource.name, "stage after", arg.after.stage, self.family)
-            }
-            _ => Ok(()),
+        let name = resource.name.as_str();
+        if let Kind::Image { width, height, layers, .. } = resource.kind {
+            check_image(name, arg, &self.formats(resource), [width, height, layers])?;
         }
+        let is_output = resource.owner == Owner::Output;
+        match is_output {
+            true => check_left(name, arg)?,
+            false => check_contents(name, arg)?,
+        }
+        check_state(name, "before", arg.before)?;
+        check_supported(name, "stage before", arg.before.stage, self.family)?;
+        if is_output {
+            check_state(name, "after", arg.after)?;
+            check_supported(name, "stage after", arg.after.stage, self.family)?;
+        }
+        Ok(())
     }
 
     /// Formats that the caller's image may have. Quantities that a [`plan::reference`](crate::plan::reference)
@@ -80,25 +94,6 @@ impl Renderer {
         let may_differ = resource.may_be_narrow() && self.plan.find("environment_cdf").is_none();
         let all = format.vk_read().iter().copied();
         all.filter(|f| *f == format.vk() || may_differ && self.readable.contains(f)).collect()
-    }
-
-    /// No image is passed twice: it could not be in two states.
-    fn check_apart(&self, inputs: &[InputArg], outputs: &[ImageArg]) -> Result<()> {
-        let names = || self.plan.inputs().chain(self.plan.outputs()).map(|(_, r)| &r.name);
-        let inputs = inputs.iter().map(|input| match input {
-            InputArg::Image(image) => Some(image),
-            InputArg::Buffer(_) => None,
-        });
-        let all = names().zip(inputs.chain(outputs.iter().map(Some)));
-        let all: Vec<_> = all.filter_map(|(name, image)| Some((name, image?))).collect();
-        for (later, (name, arg)) in all.iter().enumerate() {
-            let same = all[..later].iter().find(|(_, earlier)| earlier.image == arg.image);
-            if let Some((earlier, _)) = same {
-                let found = format!("the image of {earlier}");
-                return Err(Error::setting(*name, found, "an image of its own"));
-            }
-        }
-        Ok(())
     }
 
     /// Requires the plan's order, each pass once, and no pending pass skipped. Otherwise the plan's own images would be empty or
@@ -154,59 +149,66 @@ impl Renderer {
         }
         let names = self.plan.outputs().map(|(_, r)| &r.name);
         for (name, arg) in names.zip(outputs) {
-            if is_without_contents(arg.before.layout) {
-                return Err(Error::setting(
-                    format!("{name}: layout before an edit"),
-                    format!("{:?}", arg.before.layout),
-                    "a layout with the contents of the last recording",
-                ));
-            }
+            let expected = "a layout with the contents of the last recording";
+            check_layout(name, "before an edit", arg.before.layout, expected)?;
         }
         Ok(())
     }
 }
 
-fn is_without_contents(layout: vk::ImageLayout) -> bool {
-    matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED)
+/// Refuses a layout without contents.
+fn check_layout(name: &str, when: &str, layout: vk::ImageLayout, expected: &str) -> Result<()> {
+    if !matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED) {
+        return Ok(());
+    }
+    Err(Error::setting(format!("{name}: layout {when}"), format!("{layout:?}"), expected))
 }
 
-fn check_image(arg: &ImageArg, resource: &Resource, formats: &[vk::Format]) -> Result<()> {
-    let Kind::Image { width, height, layers, .. } = resource.kind else { return Ok(()) };
-    let name = &resource.name;
+/// Refuses an image that is read and has no contents.
+pub(in crate::gpu) fn check_contents(name: &str, arg: &ImageArg) -> Result<()> {
+    check_layout(name, "before", arg.before.layout, "a layout with contents")
+}
+
+/// Refuses to leave an image without contents.
+pub(in crate::gpu) fn check_left(name: &str, arg: &ImageArg) -> Result<()> {
+    check_layout(name, "after", arg.after.layout, "a layout to be left in")
+}
+
+/// Refuses null handles, and other formats and another size than these.
+pub(in crate::gpu) fn check_image(
+    name: &str,
+    arg: &ImageArg,
+    formats: &[vk::Format],
+    extent: [u32; 3],
+) -> Result<()> {
     if arg.image == vk::Image::null() || arg.view == vk::ImageView::null() {
         return Err(Error::setting(name, "a null image or view", "an image"));
     }
     if !formats.contains(&arg.format) {
         let names: Vec<_> = formats.iter().map(|f| format!("{f:?}")).collect();
-        return Err(Error::setting(
-            format!("{name}: format"),
-            format!("{:?}", arg.format),
-            names.join(" or "),
-        ));
+        let (name, found) = (format!("{name}: format"), format!("{:?}", arg.format));
+        return Err(Error::setting(name, found, names.join(" or ")));
     }
-    if arg.extent != [width, height, layers] {
-        return Err(Error::setting(
-            format!("{name}: extent"),
-            format!("{:?}", arg.extent),
-            format!("{:?} (columns, rows, layers)", [width, height, layers]),
-        ));
+    if arg.extent != extent {
+        let (name, found) = (format!("{name}: extent"), format!("{:?}", arg.extent));
+        return Err(Error::setting(name, found, format!("{extent:?} (columns, rows, layers)")));
     }
-    if resource.owner == Owner::Input && is_without_contents(arg.before.layout) {
-        return Err(Error::setting(
-            format!("{name}: layout"),
-            format!("{:?}", arg.before.layout),
-            "a layout with contents",
-        ));
+    Ok(())
+}
+
+/// No image is passed twice: it could not be in two states.
+pub(in crate::gpu) fn check_apart<'a>(
+    all: impl Iterator<Item = (&'a str, &'a ImageArg)>,
+) -> Result<()> {
+    let mut earlier: Vec<(&str, &ImageArg)> = Vec::new();
+    for (name, arg) in all {
+        if let Some((other, _)) = earlier.iter().find(|(_, earlier)| earlier.image == arg.image) {
+            let found = format!("the image of {other}");
+            return Err(Error::setting(name, found, "an image of its own"));
+        }
+        earlier.push((name, arg));
     }
-    if resource.owner == Owner::Output && is_without_contents(arg.after.layout) {
-        return Err(Error::setting(
-            format!("{name}: layout after"),
-            format!("{:?}", arg.after.layout),
-            "a layout to be left in",
-        ));
-    }
-    check_state(name, "before", arg.before)?;
-    if resource.owner == Owner::Output { check_state(name, "after", arg.after) } else { Ok(()) }
+    Ok(())
 }
 
 /// Refuses stages and accesses that no barrier can name.

@@ -6,7 +6,9 @@ use super::super::Host;
 use super::super::memory::DEPTH;
 use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
 use crate::gpu::ImageArg;
-use crate::gpu::renderer::{check_stage, check_state};
+use crate::gpu::renderer::{
+    check_apart, check_contents, check_image, check_left, check_stage, check_state,
+};
 use crate::gpu::requirements::family_flags;
 use crate::graph::Format;
 use crate::plan::View;
@@ -104,12 +106,13 @@ impl ViewRenderer {
                 (_, None) => {}
             }
         }
-        check_image("picture", &outputs.picture, &[self.format], view.size)?;
+        let extent = [view.size[0], view.size[1], 1];
+        check_image("picture", &outputs.picture, &[self.format], extent)?;
         check_left("picture", &outputs.picture)?;
         check_state("picture", "before", outputs.picture.before)?;
         check_state("picture", "after", outputs.picture.after)?;
         if let Some(depth) = &outputs.depth {
-            check_image("depth", depth, &[DEPTH], view.size)?;
+            check_image("depth", depth, &[DEPTH], extent)?;
             check_left("depth", depth)?;
             check_stage("depth", "before", depth.before)?;
             check_stage("depth", "after", depth.after)?;
@@ -118,7 +121,15 @@ impl ViewRenderer {
                 return wrong("depth: layout after", found, "a layout of a depth image");
             }
         }
-        self.check_apart(inputs, outputs)
+        let all = [
+            ("heights", Some(&inputs.heights)),
+            ("radiance", Some(&inputs.radiance)),
+            ("environment", inputs.environment.as_ref()),
+            ("voids", inputs.voids.as_ref()),
+            ("picture", Some(&outputs.picture)),
+            ("depth", outputs.depth.as_ref()),
+        ];
+        check_apart(all.into_iter().filter_map(|(name, arg)| Some((name, arg?))))
     }
 
     /// An image that is fetched from.
@@ -131,65 +142,8 @@ impl ViewRenderer {
     ) -> Result<()> {
         let is_readable = |format: &vk::Format| self.readable.contains(format);
         let formats: Vec<_> = formats.iter().copied().filter(is_readable).collect();
-        check_image(name, arg, &formats, size)?;
-        if is_without_contents(arg.before.layout) {
-            let name = format!("{name}: layout before");
-            return wrong(&name, format!("{:?}", arg.before.layout), "a layout with contents");
-        }
+        check_image(name, arg, &formats, [size[0], size[1], 1])?;
+        check_contents(name, arg)?;
         check_state(name, "before", arg.before)
     }
-
-    /// No image is passed twice: it could not be in two states.
-    fn check_apart(&self, inputs: &ViewInputs, outputs: &ViewOutputs) -> Result<()> {
-        let all = [
-            ("heights", Some(&inputs.heights)),
-            ("radiance", Some(&inputs.radiance)),
-            ("environment", inputs.environment.as_ref()),
-            ("voids", inputs.voids.as_ref()),
-            ("picture", Some(&outputs.picture)),
-            ("depth", outputs.depth.as_ref()),
-        ];
-        let all: Vec<_> = all.iter().filter_map(|(name, arg)| Some((*name, (*arg)?))).collect();
-        for (later, (name, arg)) in all.iter().enumerate() {
-            if let Some((earlier, _)) = all[..later].iter().find(|(_, e)| e.image == arg.image) {
-                return wrong(name, format!("the image of {earlier}"), "an image of its own");
-            }
-        }
-        Ok(())
-    }
-}
-
-fn is_without_contents(layout: vk::ImageLayout) -> bool {
-    matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED)
-}
-
-fn check_image(
-    name: &str,
-    arg: &ImageArg,
-    formats: &[vk::Format],
-    [width, height]: [u32; 2],
-) -> Result<()> {
-    if arg.image == vk::Image::null() || arg.view == vk::ImageView::null() {
-        return wrong(name, "a null image or view", "an image");
-    }
-    if !formats.contains(&arg.format) {
-        let name = format!("{name}: format");
-        let names: Vec<_> = formats.iter().map(|f| format!("{f:?}")).collect();
-        return wrong(&name, format!("{:?}", arg.format), names.join(" or "));
-    }
-    let extent = [width, height, 1];
-    if arg.extent != extent {
-        let name = format!("{name}: extent");
-        let expected = format!("{extent:?} (columns, rows, layers)");
-        return wrong(&name, format!("{:?}", arg.extent), expected);
-    }
-    Ok(())
-}
-
-fn check_left(name: &str, arg: &ImageArg) -> Result<()> {
-    if is_without_contents(arg.after.layout) {
-        let name = format!("{name}: layout after");
-        return wrong(&name, format!("{:?}", arg.after.layout), "a layout to be left in");
-    }
-    Ok(())
 }
