@@ -118,8 +118,13 @@ pub fn run(mut args: Args) -> Outcome {
         let (ms, name) = drawn(&program, &entry.command, &output, &scratch)?;
         device = name;
         let picture = match entry.name {
-            // A hillshade without shadows to the left of it.
-            "hillshade" => beside(&hillshade(&entry.command)?, &image::open(&output)?.to_rgb8()),
+            // A hillshade without shadows to the left of it: the same file and cell.
+            "hillshade" => {
+                let command = [&["hillshade".to_owned()][..], &entry.command[1..4]].concat();
+                let shade = scratch.join("shade.png");
+                drawn(&program, &command, &shade, &scratch)?;
+                beside(&image::open(shade)?.to_rgb8(), &image::open(&output)?.to_rgb8())
+            }
             // The direction of the highest horizon is a hue, its elevation the brightness.
             "horizons" => wheel(&output)?,
             // Four frames of moving heights in a row.
@@ -240,36 +245,6 @@ fn beside(left: &RgbImage, right: &RgbImage) -> RgbImage {
     image::imageops::replace(&mut both, left, 0, 0);
     image::imageops::replace(&mut both, right, i64::from(left.width() + GAP), 0);
     both
-}
-
-/// The usual hillshade: sun at azimuth 315, elevation 45; slopes by Horn's weights (B. K. P. Horn, Hill shading and the
-/// reflectance map, 1981).
-fn hillshade(command: &[String]) -> Fallible<RgbImage> {
-    let [_, path, _, cell, ..] = command else {
-        return Err("expected a field and its cell".into());
-    };
-    let cell: Vec<f64> = cell.split(',').map(str::parse).collect::<std::result::Result<_, _>>()?;
-    let cell_m = [cell[0], *cell.last().ok_or("a cell")?];
-    let options = files::HeightOptions { cell_m: Some(cell_m), ..Default::default() };
-    let field = files::read_heights(Path::new(path), &options)?;
-    let (rows, cols) = (field.rows(), field.cols());
-    let at = |row: i64, col: i64| {
-        let (row, col) = (row.clamp(0, rows as i64 - 1), col.clamp(0, cols as i64 - 1));
-        f64::from(field.heights_m()[row as usize * cols + col as usize])
-    };
-    let half = std::f64::consts::FRAC_1_SQRT_2;
-    // North-west, 45 degrees up.
-    let sun = [-0.5, 0.5, half];
-    Ok(RgbImage::from_fn(cols as u32, rows as u32, |x, y| {
-        let (row, col) = (i64::from(y), i64::from(x));
-        let column = |c: i64| at(row - 1, c) + 2.0 * at(row, c) + at(row + 1, c);
-        let line = |r: i64| at(r, col - 1) + 2.0 * at(r, col) + at(r, col + 1);
-        let east = (column(col + 1) - column(col - 1)) / (8.0 * cell_m[0]);
-        let north = (line(row - 1) - line(row + 1)) / (8.0 * cell_m[1]);
-        let length = (1.0 + east * east + north * north).sqrt();
-        let cosine = (sun[2] - east * sun[0] - north * sun[1]) / length;
-        Rgb([(255.0 * cosine.clamp(0.0, 1.0)).round() as u8; 3])
-    }))
 }
 
 /// Hues of the highest horizons.
