@@ -8,40 +8,18 @@ use ddsfile::{
 };
 use ridgelight::{Error, Result};
 
-use super::ktx2::{level_size, most_levels};
+use super::ktx2::{counts, level_size};
 use crate::atomic::{Temporary, Written};
-use crate::{Block, Component, TexelFormat, Texels};
+use crate::{Block, Texels};
 
 /// The DXGI format of texels; none for other counts of components.
 fn dxgi(texels: Texels) -> Option<DxgiFormat> {
-    use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
-    let TexelFormat { component, count } = match texels {
-        Texels::Blocks(Block::Bc4) => return Some(DxgiFormat::BC4_UNorm),
-        Texels::Blocks(Block::Bc6h) => return Some(DxgiFormat::BC6H_UF16),
-        Texels::Blocks(Block::Bc7) => return Some(DxgiFormat::BC7_UNorm),
-        Texels::Plain(format) => format,
-    };
-    Some(match (component, count) {
-        (Unorm8, 1) => DxgiFormat::R8_UNorm,
-        (Snorm8, 1) => DxgiFormat::R8_SNorm,
-        (Unorm8, 2) => DxgiFormat::R8G8_UNorm,
-        (Snorm8, 2) => DxgiFormat::R8G8_SNorm,
-        (Unorm8, 4) => DxgiFormat::R8G8B8A8_UNorm,
-        (Snorm8, 4) => DxgiFormat::R8G8B8A8_SNorm,
-        (Unorm16, 1) => DxgiFormat::R16_UNorm,
-        (Snorm16, 1) => DxgiFormat::R16_SNorm,
-        (F16, 1) => DxgiFormat::R16_Float,
-        (Unorm16, 2) => DxgiFormat::R16G16_UNorm,
-        (Snorm16, 2) => DxgiFormat::R16G16_SNorm,
-        (F16, 2) => DxgiFormat::R16G16_Float,
-        (Unorm16, 4) => DxgiFormat::R16G16B16A16_UNorm,
-        (Snorm16, 4) => DxgiFormat::R16G16B16A16_SNorm,
-        (F16, 4) => DxgiFormat::R16G16B16A16_Float,
-        (F32, 1) => DxgiFormat::R32_Float,
-        (F32, 2) => DxgiFormat::R32G32_Float,
-        (F32, 4) => DxgiFormat::R32G32B32A32_Float,
-        _ => return None,
-    })
+    match texels {
+        Texels::Blocks(Block::Bc4) => Some(DxgiFormat::BC4_UNorm),
+        Texels::Blocks(Block::Bc6h) => Some(DxgiFormat::BC6H_UF16),
+        Texels::Blocks(Block::Bc7) => Some(DxgiFormat::BC7_UNorm),
+        Texels::Plain(format) => format.dxgi(),
+    }
 }
 
 /// Writes a texture layer by layer, each with all its mip levels, the largest first.
@@ -67,16 +45,7 @@ impl DdsWriter {
         let format = dxgi(texels).ok_or_else(|| {
             Error::setting("texels", format!("{texels:?}"), "1, 2 or 4 components")
         })?;
-        let side = |what: &str, n: usize| {
-            let found = || Error::setting(what, n.to_string(), "1 to 4294967295");
-            u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
-        };
-        let (cols, rows) = (side("columns", size[0])?, side("rows", size[1])?);
-        let layers = side("layers", layers)?;
-        if !(1..=most_levels(size)).contains(&levels) {
-            let expected = format!("1 to {}", most_levels(size));
-            return Err(Error::setting("mip levels", levels.to_string(), expected));
-        }
+        let [cols, rows, layers] = counts(size, layers, levels)?;
         let too_large = || {
             let found = format!("{cols} × {rows} × {layers}");
             Error::setting("texture", found, "rows and images below 2³² bytes")

@@ -3,6 +3,7 @@
 
 use crate::atomic::{Temporary, Written};
 use crate::{Block, Component};
+use ddsfile::DxgiFormat;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
@@ -26,65 +27,50 @@ impl TexelFormat {
     /// The Vulkan format's number and its name without `VK_FORMAT_`; none for other counts of
     /// components.
     pub fn vulkan(self) -> Option<(u32, &'static str)> {
-        use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
-        Some(match (self.component, self.count) {
-            (Unorm8, 1) => (9, "R8_UNORM"),
-            (Snorm8, 1) => (10, "R8_SNORM"),
-            (Unorm8, 2) => (16, "R8G8_UNORM"),
-            (Snorm8, 2) => (17, "R8G8_SNORM"),
-            (Unorm8, 4) => (37, "R8G8B8A8_UNORM"),
-            (Snorm8, 4) => (38, "R8G8B8A8_SNORM"),
-            (Unorm16, 1) => (70, "R16_UNORM"),
-            (Snorm16, 1) => (71, "R16_SNORM"),
-            (F16, 1) => (76, "R16_SFLOAT"),
-            (Unorm16, 2) => (77, "R16G16_UNORM"),
-            (Snorm16, 2) => (78, "R16G16_SNORM"),
-            (F16, 2) => (83, "R16G16_SFLOAT"),
-            (Unorm16, 4) => (91, "R16G16B16A16_UNORM"),
-            (Snorm16, 4) => (92, "R16G16B16A16_SNORM"),
-            (F16, 4) => (97, "R16G16B16A16_SFLOAT"),
-            (F32, 1) => (100, "R32_SFLOAT"),
-            (F32, 2) => (103, "R32G32_SFLOAT"),
-            (F32, 4) => (109, "R32G32B32A32_SFLOAT"),
-            _ => return None,
-        })
+        self.names().map(|names| names.1)
+    }
+
+    /// The DXGI format; none for other counts of components.
+    pub(crate) fn dxgi(self) -> Option<DxgiFormat> {
+        self.names().map(|names| names.2)
+    }
+
+    fn names(self) -> Option<&'static Names> {
+        FORMATS.iter().find(|names| names.0 == (self.component, self.count))
     }
 
     /// Bytes of a texel.
     pub fn bytes(self) -> usize {
         self.count * self.component.bytes()
     }
-
-    /// The basic descriptor of Khronos' Data Format Specification 1.3 (§5), after its total size:
-    /// linear numbers without primaries, one sample per component.
-    fn descriptor(self) -> Vec<u8> {
-        let block = 24 + 16 * self.count as u32;
-        let bits = 8 * self.component.bytes() as u32;
-        // Vendor 0 and type 0; version 2; colour model 1 (RGBSDA), primaries 0, transfer 1
-        // (linear), flags 0; texels of 1 × 1 × 1 × 1 (each less one); bytes of the first plane.
-        let mut words =
-            vec![4 + block, 0, 2 | (block << 16), 1 | (1 << 16), 0, self.bytes() as u32, 0];
-        for i in 0..self.count as u32 {
-            // Channels of RGBSDA: 0, 1, 2 and, alpha, 15. Qualifiers: 0x40 signed, 0x80 float.
-            let channel = if i == 3 { 15 } else { i };
-            let (qualifiers, low, high) = match self.component {
-                Component::F16 | Component::F32 => (0xc0, (-1_f32).to_bits(), 1_f32.to_bits()),
-                other if other.is_signed() => {
-                    let one = other.one() as i32;
-                    (0x40, (-one) as u32, one as u32)
-                }
-                other => (0, 0, other.one() as u32),
-            };
-            words.extend([
-                (i * bits) | ((bits - 1) << 16) | ((channel | qualifiers) << 24),
-                0,
-                low,
-                high,
-            ]);
-        }
-        words.iter().flat_map(|word| word.to_le_bytes()).collect()
-    }
 }
+
+/// A texel format, its Vulkan format and its DXGI format.
+type Names = ((Component, usize), (u32, &'static str), DxgiFormat);
+
+static FORMATS: [Names; 18] = {
+    use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
+    [
+        ((Unorm8, 1), (9, "R8_UNORM"), DxgiFormat::R8_UNorm),
+        ((Snorm8, 1), (10, "R8_SNORM"), DxgiFormat::R8_SNorm),
+        ((Unorm8, 2), (16, "R8G8_UNORM"), DxgiFormat::R8G8_UNorm),
+        ((Snorm8, 2), (17, "R8G8_SNORM"), DxgiFormat::R8G8_SNorm),
+        ((Unorm8, 4), (37, "R8G8B8A8_UNORM"), DxgiFormat::R8G8B8A8_UNorm),
+        ((Snorm8, 4), (38, "R8G8B8A8_SNORM"), DxgiFormat::R8G8B8A8_SNorm),
+        ((Unorm16, 1), (70, "R16_UNORM"), DxgiFormat::R16_UNorm),
+        ((Snorm16, 1), (71, "R16_SNORM"), DxgiFormat::R16_SNorm),
+        ((F16, 1), (76, "R16_SFLOAT"), DxgiFormat::R16_Float),
+        ((Unorm16, 2), (77, "R16G16_UNORM"), DxgiFormat::R16G16_UNorm),
+        ((Snorm16, 2), (78, "R16G16_SNORM"), DxgiFormat::R16G16_SNorm),
+        ((F16, 2), (83, "R16G16_SFLOAT"), DxgiFormat::R16G16_Float),
+        ((Unorm16, 4), (91, "R16G16B16A16_UNORM"), DxgiFormat::R16G16B16A16_UNorm),
+        ((Snorm16, 4), (92, "R16G16B16A16_SNORM"), DxgiFormat::R16G16B16A16_SNorm),
+        ((F16, 4), (97, "R16G16B16A16_SFLOAT"), DxgiFormat::R16G16B16A16_Float),
+        ((F32, 1), (100, "R32_SFLOAT"), DxgiFormat::R32_Float),
+        ((F32, 2), (103, "R32G32_SFLOAT"), DxgiFormat::R32G32_Float),
+        ((F32, 4), (109, "R32G32B32A32_SFLOAT"), DxgiFormat::R32G32B32A32_Float),
+    ]
+};
 
 /// What an image of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,32 +127,42 @@ impl Texels {
         }
     }
 
+    /// The basic descriptor of Khronos' Data Format Specification 1.3 (§5), after its total size: linear numbers without
+    /// primaries. Texels have a sample per component, blocks of 4 × 4 (§5.6) one for all.
     fn descriptor(self) -> Vec<u8> {
-        match self {
-            Texels::Plain(format) => format.descriptor(),
-            Texels::Blocks(block) => block_descriptor(block),
+        // Of each sample: its channel and qualifiers (0x40 signed, 0x80 float), the least number, and the one that stands for 1.
+        let (model, sides, bits, samples) = match self {
+            Texels::Plain(TexelFormat { component, count }) => {
+                let one = component.one() as i32;
+                let (qualifiers, low, high) = match component {
+                    Component::F16 | Component::F32 => (0xc0, (-1_f32).to_bits(), 1_f32.to_bits()),
+                    other if other.is_signed() => (0x40, (-one) as u32, one as u32),
+                    _ => (0, 0, one as u32),
+                };
+                // Colour model 1 is RGBSDA: channels 0, 1, 2 and, alpha, 15.
+                let channels = [0_u32, 1, 2, 15].into_iter().take(count);
+                let samples: Vec<_> = channels.map(|c| [c | qualifiers, low, high]).collect();
+                (1, 0, 8 * component.bytes() as u32, samples)
+            }
+            Texels::Blocks(block) => {
+                let (model, sample) = match block {
+                    Block::Bc4 => (131, [0, 0, u32::MAX]),
+                    Block::Bc6h => (133, [0x80, 0, 1_f32.to_bits()]),
+                    Block::Bc7 => (134, [0, 0, u32::MAX]),
+                };
+                // The sides are stored less one.
+                (model, 3 | (3 << 8), 8 * block.bytes() as u32, vec![sample])
+            }
+        };
+        let size = 24 + 16 * samples.len() as u32;
+        // Vendor 0 and type 0; version 2; primaries 0, transfer 1 (linear), flags 0; bytes of the first plane.
+        let bytes = self.unit() as u32;
+        let mut words = vec![4 + size, 0, 2 | (size << 16), model | (1 << 16), sides, bytes, 0];
+        for (i, [channel, low, high]) in (0_u32..).zip(samples) {
+            words.extend([(i * bits) | ((bits - 1) << 16) | (channel << 24), 0, low, high]);
         }
+        words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
-}
-
-/// The basic descriptor of a block format (Data Format Specification 1.3, §5.6): blocks of 4 × 4,
-/// and a sample for each part of a block.
-fn block_descriptor(block: Block) -> Vec<u8> {
-    // Colour model, bits of a sample, samples, qualifiers, and the number that stands for 1.
-    let (model, bits, samples, qualifiers, one): (u32, u32, u32, u32, u32) = match block {
-        Block::Bc4 => (131, 64, 1, 0, u32::MAX),
-        Block::Bc6h => (133, 128, 1, 0x80, 1_f32.to_bits()),
-        Block::Bc7 => (134, 128, 1, 0, u32::MAX),
-    };
-    let size = 24 + 16 * samples;
-    // As for plain texels; the block's sides are stored less one.
-    let (linear, sides) = (1 << 16, 3 | (3 << 8));
-    let mut words =
-        vec![4 + size, 0, 2 | (size << 16), model | linear, sides, block.bytes() as u32, 0];
-    for i in 0..samples {
-        words.extend([(i * bits) | ((bits - 1) << 16) | ((i | qualifiers) << 24), 0, 0, one]);
-    }
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 /// Sides of a mip level.
@@ -175,8 +171,26 @@ pub(crate) fn level_size(size: [usize; 2], level: usize) -> [usize; 2] {
 }
 
 /// The largest number of mip levels.
-pub(crate) fn most_levels([cols, rows]: [usize; 2]) -> usize {
+fn most_levels([cols, rows]: [usize; 2]) -> usize {
     cols.max(rows).max(1).ilog2() as usize + 1
+}
+
+/// Columns, rows and layers as a header holds them.
+///
+/// # Errors
+/// A count of 0 or beyond 2³²; no mip level, or more than down to one texel.
+pub(crate) fn counts(size: [usize; 2], layers: usize, levels: usize) -> Result<[u32; 3]> {
+    let side = |what: &str, n: usize| {
+        let found = || Error::setting(what, n.to_string(), "1 to 4294967295");
+        u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
+    };
+    let layers = side("layers", layers)?;
+    let counts = [side("columns", size[0])?, side("rows", size[1])?, layers];
+    if !(1..=most_levels(size)).contains(&levels) {
+        let expected = format!("1 to {}", most_levels(size));
+        return Err(Error::setting("mip levels", levels.to_string(), expected));
+    }
+    Ok(counts)
 }
 
 /// Writes a texture layer by layer, so that it may be larger than memory.
@@ -224,24 +238,15 @@ impl Ktx2Writer {
             let found = format!("{texels:?}");
             return Err(Error::setting("texels", found, "1, 2 or 4 components"));
         };
-        let side = |what: &str, n: usize| {
-            let found = || Error::setting(what, n.to_string(), "1 to 4294967295");
-            u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
-        };
-        let layer_count = layers.map_or(Ok(0), |n| side("layers", n))?;
-        let sides = [side("columns", size[0])?, side("rows", size[1])?];
-        if !(1..=most_levels(size)).contains(&levels) {
-            let expected = format!("1 to {}", most_levels(size));
-            return Err(Error::setting("mip levels", levels.to_string(), expected));
-        }
+        let [cols, rows, layer_count] = counts(size, layers.unwrap_or(1), levels)?;
         let bytes = |level: usize| {
             let image = texels.image_bytes(level_size(size, level));
-            image.and_then(|n| n.checked_mul(u64::from(layer_count.max(1))))
+            image.and_then(|n| n.checked_mul(u64::from(layer_count)))
         };
         let bytes: Option<Vec<u64>> = (0..levels).map(bytes).collect();
         // Each level is at most the first, and at most 32 follow.
         let bytes = bytes.filter(|all| all[0].checked_mul(64).is_some()).ok_or_else(|| {
-            let found = format!("{} × {} × {layer_count}", size[0], size[1]);
+            let found = format!("{cols} × {rows} × {layer_count}");
             Error::setting("texture", found, "below 2⁵⁸ bytes")
         })?;
         let (descriptor, keys) = (texels.descriptor(), keys(texts)?);
@@ -262,10 +267,11 @@ impl Ktx2Writer {
         let words = [
             vulkan,
             texels.type_size(),
-            sides[0],
-            sides[1],
+            cols,
+            rows,
             depth,
-            layer_count,
+            // 0 for a texture that is no array.
+            layers.map_or(0, |_| layer_count),
             faces,
             levels as u32,
             supercompression,
