@@ -162,6 +162,23 @@ impl Host {
         // SAFETY: the handle was made on this device and is alive.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
+
+    /// Records commands, which a debugger shows below a label.
+    fn labelled(
+        &self,
+        commands: vk::CommandBuffer,
+        label: impl FnOnce() -> String,
+        record: impl FnOnce(),
+    ) {
+        let Some(debug) = &self.debug_utils else { return record() };
+        let name = std::ffi::CString::new(label()).unwrap_or_default();
+        let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
+        // SAFETY: `commands` is being recorded; the name lives across the call.
+        unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
+        record();
+        // SAFETY: as above; the label is open.
+        unsafe { debug.cmd_end_debug_utils_label(commands) };
+    }
 }
 
 impl Format {

@@ -11,13 +11,13 @@ use ash::vk;
 
 use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
+use super::pipelines::Pipeline;
 use super::renderer::{ImageArg, Timing};
 use super::timestamps::Timestamps;
 use super::{Host, requirements};
 use crate::plan::View;
 use crate::{Error, Result};
 
-use pipelines::Drawing;
 use targets::{Framebuffers, RenderPasses};
 
 /// Images that a [`ViewRenderer`] reads, in any state; they are left as before.
@@ -71,12 +71,8 @@ pub struct ViewRenderer {
     /// Input of the tone curve.
     linear: Option<Backed>,
     indices: Option<Backed>,
-    terrain: Drawing,
-    sky: Drawing,
-    plinth: Option<Drawing>,
-    /// Writes the depth of sample 0, if the view uses MSAA.
-    depth_resolve: Option<Drawing>,
-    tone: Option<Drawing>,
+    /// By [`LABELS`].
+    drawings: [Option<Pipeline>; LABELS.len()],
     render_passes: RenderPasses,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
@@ -128,7 +124,8 @@ impl Curve {
 /// Format of the images before the tone curve.
 const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Labels of the GPU times, in pass order. The last three passes are optional.
+/// Labels of the GPU times, in pass order. The last three passes are optional: a plinth; the depth of sample 0, where the
+/// view uses MSAA; the tone curve.
 const LABELS: [&str; 5] =
     ["terrain_draw", "sky_draw", "plinth_draw", "depth_resolve", "picture_tone"];
 
@@ -169,11 +166,7 @@ impl ViewRenderer {
             depth: None,
             linear: None,
             indices: None,
-            terrain: Drawing::default(),
-            sky: Drawing::default(),
-            plinth: None,
-            depth_resolve: None,
-            tone: None,
+            drawings: Default::default(),
             render_passes: RenderPasses::default(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
@@ -224,11 +217,6 @@ impl ViewRenderer {
         let times = slot.timestamps.as_ref()?.ns(slot.recorded.len() + 1)?;
         let labelled = slot.recorded.iter().zip(times);
         Some(labelled.map(|(label, ns)| Timing { label: (*label).to_owned(), ns }).collect())
-    }
-
-    /// By [`LABELS`].
-    fn drawings(&self) -> [Option<Drawing>; LABELS.len()] {
-        [Some(self.terrain), Some(self.sky), self.plinth, self.depth_resolve, self.tone]
     }
 
     /// Frees everything. All recorded commands must have finished.

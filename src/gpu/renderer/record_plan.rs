@@ -9,7 +9,7 @@ use super::super::shaders::BindingKind;
 use super::buffers::Taken;
 use super::images::transition;
 use super::{BufferArg, ImageArg, ImageState, InputArg, Progress, Renderer};
-use crate::graph::{Owner, Pass, Rectangle, ResourceId};
+use crate::graph::{Owner, Rectangle, ResourceId};
 
 impl Renderer {
     /// Records passes; all arguments have been checked.
@@ -160,38 +160,25 @@ impl Renderer {
         let sets = [self.slots[slot].sets[index]];
         let of_edit = edited.map(|rectangle| pass.for_edit(rectangle));
         let (groups, push) = of_edit.as_ref().map_or((pass.groups, &pass.push), |(g, p)| (*g, p));
-        self.label(commands, Some(pass));
-        // SAFETY: as the caller guarantees; sets and push constants match the pipeline's layout.
-        unsafe {
-            device.cmd_bind_pipeline(commands, point, pipeline.pipeline);
-            device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
-            let stages = vk::ShaderStageFlags::COMPUTE;
-            device.cmd_push_constants(commands, pipeline.layout, stages, 0, push);
-            match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
-                Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
-                None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+        let record = || {
+            // SAFETY: as the caller guarantees; sets and push constants match the pipeline's layout.
+            unsafe {
+                device.cmd_bind_pipeline(commands, point, pipeline.pipeline);
+                device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
+                let stages = pipeline.push.stage_flags;
+                device.cmd_push_constants(commands, pipeline.layout, stages, 0, push);
+                match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
+                    Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
+                    None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+                }
             }
-        }
-        self.label(commands, None);
+        };
+        self.host.labelled(commands, || pass.label(), record);
     }
 
     /// Whether a barrier is between two passes recorded one after the other.
     fn must_wait(&self, last: usize, next: usize) -> bool {
         (last + 1..=next).any(|p| self.pass(p).barrier_before)
-    }
-
-    fn label(&self, commands: vk::CommandBuffer, pass: Option<&Pass>) {
-        let Some(debug) = &self.host.debug_utils else { return };
-        match pass {
-            Some(pass) => {
-                let name = std::ffi::CString::new(pass.label()).unwrap_or_default();
-                let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
-                // SAFETY: `commands` is being recorded; the name lives across the call.
-                unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
-            }
-            // SAFETY: `commands` is being recorded and a label is open.
-            None => unsafe { debug.cmd_end_debug_utils_label(commands) },
-        }
     }
 
     fn state_of(&self, id: ResourceId) -> ImageState {

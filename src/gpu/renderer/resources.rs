@@ -3,9 +3,8 @@
 use ash::vk;
 
 use super::super::allocator::MemoryUse;
-use super::super::failed;
 use super::super::memory::{Backed, Memory};
-use super::super::pipelines::descriptor_type;
+use super::super::pipelines::{descriptor_type, descriptors};
 use super::super::shaders::BindingKind;
 use super::super::timestamps::Timestamps;
 use super::{Renderer, Slot};
@@ -94,7 +93,6 @@ impl Renderer {
     }
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
-        let device = self.host.device.clone();
         let mut sizes: Vec<vk::DescriptorPoolSize> = Vec::new();
         for binding in self.plan.every_pass().flat_map(|p| p.shader.bindings) {
             let ty = descriptor_type(binding.kind);
@@ -104,29 +102,18 @@ impl Renderer {
             }
         }
         let passes = self.plan.every_pass().count();
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets((slots * passes) as u32)
-            .pool_sizes(&sizes);
-        // SAFETY: the device is alive; a plan has at least one pass, a pass at least one binding.
-        self.descriptor_pool = unsafe { device.create_descriptor_pool(&info, None) }
-            .map_err(failed("making the descriptor pool"))?;
-        self.host.name(self.descriptor_pool, "ridgelight");
-        for number in 0..slots {
-            let layouts: Vec<_> = self.pipeline_of_pass.iter().map(|p| p.set_layout).collect();
-            let sets_info = vk::DescriptorSetAllocateInfo::default()
-                .descriptor_pool(self.descriptor_pool)
-                .set_layouts(&layouts);
-            // SAFETY: the pool was sized for exactly these sets; the layouts are alive.
-            let sets = unsafe { device.allocate_descriptor_sets(&sets_info) }
-                .map_err(failed("making a frame's descriptors"))?;
-            for (pass, set) in self.plan.every_pass().zip(&sets) {
+        let layouts: Vec<_> = self.pipeline_of_pass.iter().map(|p| p.set_layout).collect();
+        let pool = (&mut self.descriptor_pool, "ridgelight");
+        let all = descriptors(&self.host, pool, &sizes, &layouts.repeat(slots))?;
+        for (number, sets) in all.chunks(passes).enumerate() {
+            for (pass, set) in self.plan.every_pass().zip(sets) {
                 self.host.name(*set, &format!("{}, slot {number}", pass.label()));
             }
             let name = format!("ridgelight, slot {number}");
             let timestamps = Timestamps::new(&self.host, &mut self.memory, &name, passes + 1)?;
             let (tables, recorded, times_passes) = (Vec::new(), Vec::new(), true);
             self.slots.push(Slot {
-                sets,
+                sets: sets.to_vec(),
                 tables,
                 is_current: false,
                 timestamps,

@@ -88,7 +88,7 @@ impl ViewRenderer {
         if !view.is_shaped_like(&self.shape) {
             return wrong("view", "another shape", "the sizes and images that it was made for");
         }
-        if self.tone.is_some() && !(exposure.is_finite() && exposure >= 0.0) {
+        if self.linear.is_some() && !(exposure.is_finite() && exposure >= 0.0) {
             return wrong("exposure", exposure.to_string(), "a number, 0 or more");
         }
         let single = Format::R32Float.vk_read();

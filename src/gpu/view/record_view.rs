@@ -4,10 +4,10 @@ use ash::vk;
 
 use super::super::barriers::Barriers;
 use super::super::memory::{Backed, DEPTH, whole_attachment};
+use super::super::pipelines::Pipeline;
 use super::super::renderer::transition;
-use super::pipelines::{Drawing, STAGES};
 use super::targets::CLEARED;
-use super::{LABELS, ViewInputs, ViewOutputs, ViewRenderer};
+use super::{LABELS, Slot, ViewInputs, ViewOutputs, ViewRenderer};
 use crate::gpu::{ImageArg, ImageState};
 use crate::graph::shaders::PictureTonePush;
 use crate::passes::plinth_draw;
@@ -83,8 +83,8 @@ impl ViewRenderer {
             .chain(inputs.voids.as_ref().filter(|_| view.has_voids))
             .collect();
         let device = self.host.device.clone();
-        let depth_resolve = self.depth_resolve.filter(|_| outputs.depth.is_some());
-        let recorded = [Some(self.terrain), Some(self.sky), self.plinth, depth_resolve, self.tone];
+        let mut recorded = self.drawings;
+        recorded[3] = recorded[3].filter(|_| outputs.depth.is_some());
         let labels: Vec<_> =
             LABELS.into_iter().zip(recorded).filter_map(|(label, d)| d.map(|_| label)).collect();
         let count = labels.len() + 1;
@@ -115,19 +115,15 @@ impl ViewRenderer {
         write_timestamp();
         let scene = this.render_passes.scene[usize::from(outputs.depth.is_some())];
         this.begin(commands, scene, at.framebuffers[0]);
-        this.labelled(commands, LABELS[0], || {
-            this.bind(commands, &this.terrain, at.sets[0], bytemuck::bytes_of(&view.terrain));
+        this.draw(commands, (at, 0), bytemuck::bytes_of(&view.terrain), || {
             this.draw_tiles(commands, view.tiles);
         });
         write_timestamp();
-        this.labelled(commands, LABELS[1], || {
-            this.bind(commands, &this.sky, at.sets[1], bytemuck::bytes_of(&view.sky));
-            this.draw_triangle(commands);
-        });
+        let triangle = || this.draw_triangle(commands);
+        this.draw(commands, (at, 1), bytemuck::bytes_of(&view.sky), triangle);
         write_timestamp();
-        if let (Some(plinth), Some(push)) = (&this.plinth, &view.plinth) {
-            this.labelled(commands, LABELS[2], || {
-                this.bind(commands, plinth, at.sets[2], bytemuck::bytes_of(push));
+        if let (Some(_), Some(push)) = (recorded[2], &view.plinth) {
+            this.draw(commands, (at, 2), bytemuck::bytes_of(push), || {
                 let vertices = plinth_draw::vertices(push);
                 // SAFETY: `commands` is being recorded within a render pass, a pipeline bound.
                 unsafe { device.cmd_draw(commands, vertices, plinth_draw::FACES, 0, 0) };
@@ -135,25 +131,19 @@ impl ViewRenderer {
             write_timestamp();
         }
         end();
-        if let (Some(first), Some(depth)) = (&depth_resolve, &this.depth) {
+        if let (Some(_), Some(depth)) = (recorded[3], &this.depth) {
             wait(&[of_kind(transition(depth.image, 1, TESTED, FETCHED), FETCHED)]);
-            this.labelled(commands, LABELS[3], || {
-                this.begin(commands, this.render_passes.depth, at.framebuffers[1]);
-                this.bind(commands, first, at.sets[3], &[]);
-                this.draw_triangle(commands);
-                end();
-            });
+            this.begin(commands, this.render_passes.depth, at.framebuffers[1]);
+            this.draw(commands, (at, 3), &[], triangle);
+            end();
             write_timestamp();
         }
-        if let (Some(tone), Some(linear)) = (&this.tone, &this.linear) {
+        if let Some(linear) = &this.linear {
             wait(&[transition(linear.image, 1, DRAWN, READ)]);
-            this.labelled(commands, LABELS[4], || {
-                this.begin(commands, this.render_passes.tone, at.framebuffers[2]);
-                let push = PictureTonePush { exposure };
-                this.bind(commands, tone, at.sets[4], bytemuck::bytes_of(&push));
-                this.draw_triangle(commands);
-                end();
-            });
+            this.begin(commands, this.render_passes.tone, at.framebuffers[2]);
+            let push = PictureTonePush { exposure };
+            this.draw(commands, (at, 4), bytemuck::bytes_of(&push), triangle);
+            end();
             write_timestamp();
         }
         wait(&this.exit(&read, outputs));
@@ -215,25 +205,33 @@ impl ViewRenderer {
         }
     }
 
-    fn bind(
+    /// Binds a slot's drawing, by [`LABELS`], and records its draw, labelled.
+    fn draw(
         &self,
         commands: vk::CommandBuffer,
-        drawing: &Drawing,
-        set: vk::DescriptorSet,
+        (at, index): (&Slot, usize),
         push: &[u8],
+        record: impl FnOnce(),
     ) {
+        let Some(Pipeline { pipeline, layout, push: range, .. }) = self.drawings[index] else {
+            return;
+        };
         let point = vk::PipelineBindPoint::GRAPHICS;
-        let push = &push[..drawing.push_bytes as usize];
-        let device = &self.host.device;
-        // SAFETY: `commands` is being recorded within a render pass of the pipeline's formats; set and push
-        // constants match its layout.
-        unsafe {
-            device.cmd_bind_pipeline(commands, point, drawing.pipeline);
-            device.cmd_bind_descriptor_sets(commands, point, drawing.layout, 0, &[set], &[]);
-            if !push.is_empty() {
-                device.cmd_push_constants(commands, drawing.layout, STAGES, 0, push);
+        let push = &push[..range.size as usize];
+        let (device, sets) = (&self.host.device, [at.sets[index]]);
+        let bound = || {
+            // SAFETY: `commands` is being recorded within a render pass of the pipeline's formats; set and push
+            // constants match its layout.
+            unsafe {
+                device.cmd_bind_pipeline(commands, point, pipeline);
+                device.cmd_bind_descriptor_sets(commands, point, layout, 0, &sets, &[]);
+                if !push.is_empty() {
+                    device.cmd_push_constants(commands, layout, range.stage_flags, 0, push);
+                }
             }
-        }
+            record();
+        };
+        self.host.labelled(commands, || LABELS[index].to_owned(), bound);
     }
 
     fn draw_tiles(&self, commands: vk::CommandBuffer, tiles: u32) {
@@ -253,20 +251,6 @@ impl ViewRenderer {
         unsafe { self.host.device.cmd_draw(commands, 3, 1, 0, 0) };
     }
 
-    fn labelled(&self, commands: vk::CommandBuffer, label: &str, record: impl FnOnce()) {
-        let name = std::ffi::CString::new(label).unwrap_or_default();
-        if let Some(debug) = &self.host.debug_utils {
-            let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
-            // SAFETY: `commands` is being recorded; the name lives across the call.
-            unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
-        }
-        record();
-        if let Some(debug) = &self.host.debug_utils {
-            // SAFETY: as above; the label is open.
-            unsafe { debug.cmd_end_debug_utils_label(commands) };
-        }
-    }
-
     fn write_sets(&self, slot: usize, inputs: &ViewInputs) {
         let [terrain, sky, plinth, first, tone] = self.slots[slot].sets;
         // Absent inputs are not read: any image is bound for them.
@@ -279,12 +263,12 @@ impl ViewRenderer {
             (terrain, 2, voids.view),
             (sky, 0, environment.view),
         ];
-        if self.plinth.is_some() {
+        if self.drawings[2].is_some() {
             let views = [inputs.heights.view, inputs.radiance.view, voids.view];
             bound.extend((0..).zip(views).map(|(binding, view)| (plinth, binding, view)));
         }
         bound.extend(self.linear.as_ref().map(|linear| (tone, 0, linear.view)));
-        let depth = self.depth.as_ref().filter(|_| self.depth_resolve.is_some());
+        let depth = self.depth.as_ref().filter(|_| self.drawings[3].is_some());
         bound.extend(depth.map(|depth| (first, 0, depth.view)));
         let infos: Vec<_> = bound
             .iter()

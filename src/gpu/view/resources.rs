@@ -4,13 +4,15 @@ use ash::vk;
 
 use super::super::allocator::MemoryUse;
 use super::super::memory::DEPTH;
+use super::super::pipelines::descriptors;
+use super::super::shaders;
 use super::super::timestamps::Timestamps;
-use super::super::{failed, shaders};
-use super::pipelines::{Drawing, Recipe};
+use super::pipelines::Recipe;
 use super::targets::Framebuffers;
 use super::{Curve, LABELS, LINEAR, Slot, ViewRenderer};
 use crate::graph::Format;
 use crate::passes::terrain_draw::tile_indices;
+use crate::plan::View;
 use crate::{Error, Result};
 
 impl ViewRenderer {
@@ -29,80 +31,48 @@ impl ViewRenderer {
         self.render_passes.make(&self.host, (drawn, self.samples), self.format)?;
         let (scene, samples) = (self.render_passes.scene[0], self.samples);
         let is_grey = self.shape.radiance == Format::R32Float;
-        self.terrain.make(
-            &self.host,
-            &Recipe {
-                shaders: [
-                    shaders::TerrainDrawVert {}.into(),
-                    shaders::TerrainDrawFrag { is_grey, has_voids: self.shape.has_voids }.into(),
-                ],
-                render_pass: scene,
-                has_colour: true,
-                samples,
-                depth: Some((vk::CompareOp::GREATER, true)),
-            },
-        )?;
-        self.sky.make(
-            &self.host,
-            &Recipe {
-                shaders: [
-                    shaders::SkyDrawVert {}.into(),
-                    shaders::SkyDrawFrag { has_environment: self.shape.environment.is_some() }
-                        .into(),
-                ],
-                render_pass: scene,
-                has_colour: true,
-                samples,
-                // Background, where nothing is drawn.
-                depth: Some((vk::CompareOp::GREATER_OR_EQUAL, false)),
-            },
-        )?;
-        if self.shape.plinth.is_some() {
-            let has_voids = self.shape.has_voids;
-            self.plinth.insert(Drawing::default()).make(
-                &self.host,
-                &Recipe {
-                    shaders: [
-                        shaders::PlinthDrawVert { is_grey, has_voids }.into(),
-                        shaders::PlinthDrawFrag { has_voids }.into(),
-                    ],
-                    render_pass: scene,
-                    has_colour: true,
-                    samples,
-                    // Over everything, without depths.
-                    depth: Some((vk::CompareOp::ALWAYS, false)),
-                },
-            )?;
-        }
-        if self.samples != one {
-            self.depth_resolve.insert(Drawing::default()).make(
-                &self.host,
-                &Recipe {
-                    shaders: [
-                        shaders::PictureToneVert {}.into(),
-                        shaders::DepthResolveFrag {}.into(),
-                    ],
-                    render_pass: self.render_passes.depth,
-                    has_colour: false,
-                    samples: one,
-                    depth: Some((vk::CompareOp::ALWAYS, true)),
-                },
-            )?;
-        }
-        if curve != Curve::None {
-            self.tone.insert(Drawing::default()).make(
-                &self.host,
-                &Recipe {
-                    shaders: [
-                        shaders::PictureToneVert {}.into(),
-                        shaders::PictureToneFrag { encodes: curve == Curve::Encode }.into(),
-                    ],
-                    render_pass: self.render_passes.tone,
-                    has_colour: true,
-                    samples: one,
-                    depth: None,
-                },
-            )?;
+        let View { has_voids, .. } = self.shape;
+        let over = |shaders, depth| Recipe {
+            shaders,
+            render_pass: scene,
+            has_colour: true,
+            samples,
+            depth: Some(depth),
+        };
+        let terrain = [
+            shaders::TerrainDrawVert {}.into(),
+            shaders::TerrainDrawFrag { is_grey, has_voids }.into(),
+        ];
+        let has_environment = self.shape.environment.is_some();
+        let sky = [shaders::SkyDrawVert {}.into(), shaders::SkyDrawFrag { has_environment }.into()];
+        let plinth = [
+            shaders::PlinthDrawVert { is_grey, has_voids }.into(),
+            shaders::PlinthDrawFrag { has_voids }.into(),
+        ];
+        let whole = |fragment, render_pass, has_colour, depth| Recipe {
+            shaders: [shaders::PictureToneVert {}.into(), fragment],
+            render_pass,
+            has_colour,
+            samples: one,
+            depth,
+        };
+        let recipes = [
+            Some(over(terrain, (vk::CompareOp::GREATER, true))),
+            // Background, where nothing is drawn.
+            Some(over(sky, (vk::CompareOp::GREATER_OR_EQUAL, false))),
+            // Over everything, without depths.
+            self.shape.plinth.is_some().then(|| over(plinth, (vk::CompareOp::ALWAYS, false))),
+            (self.samples != one).then(|| {
+                let depth = Some((vk::CompareOp::ALWAYS, true));
+                whole(shaders::DepthResolveFrag {}.into(), self.render_passes.depth, false, depth)
+            }),
+            (curve != Curve::None).then(|| {
+                let fragment = shaders::PictureToneFrag { encodes: curve == Curve::Encode };
+                whole(fragment.into(), self.render_passes.tone, true, None)
+            }),
+        ];
+        for (drawing, recipe) in self.drawings.iter_mut().zip(recipes) {
+            *drawing = recipe.map(|recipe| recipe.make(&self.host)).transpose()?;
         }
         self.make_slots(slots)
     }
@@ -123,29 +93,17 @@ impl ViewRenderer {
     }
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
-        let device = self.host.device.clone();
-        let drawings = self.drawings();
+        let drawings = self.drawings;
         let layouts: Vec<_> = drawings.iter().flatten().map(|d| d.set_layout).collect();
         // Heights, radiance, voids, twice; the environment; depths; the input of the tone curve.
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::SAMPLED_IMAGE,
             descriptor_count: 9 * slots as u32,
         }];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets((slots * layouts.len()) as u32)
-            .pool_sizes(&sizes);
-        // SAFETY: the device is alive.
-        self.descriptor_pool = unsafe { device.create_descriptor_pool(&info, None) }
-            .map_err(failed("making the descriptor pool"))?;
-        self.host.name(self.descriptor_pool, "ridgelight views");
+        let pool = (&mut self.descriptor_pool, "ridgelight views");
+        let all = descriptors(&self.host, pool, &sizes, &layouts.repeat(slots))?;
+        let mut all = all.into_iter();
         for number in 0..slots {
-            let sets_info = vk::DescriptorSetAllocateInfo::default()
-                .descriptor_pool(self.descriptor_pool)
-                .set_layouts(&layouts);
-            // SAFETY: the pool was sized for exactly these sets; the layouts are alive.
-            let all = unsafe { device.allocate_descriptor_sets(&sets_info) }
-                .map_err(failed("making a frame's descriptors"))?;
-            let mut all = all.into_iter();
             let sets = drawings.map(|drawing| drawing.and_then(|_| all.next()).unwrap_or_default());
             let named = LABELS.iter().zip(&sets);
             for (label, set) in named.filter(|(_, set)| **set != vk::DescriptorSet::null()) {
@@ -173,9 +131,8 @@ impl ViewRenderer {
         // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it. Null is
         // allowed.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
-        let optional = [self.plinth.as_mut(), self.depth_resolve.as_mut(), self.tone.as_mut()];
-        let drawings = [Some(&mut self.terrain), Some(&mut self.sky)].into_iter().chain(optional);
-        drawings.flatten().for_each(|drawing| drawing.free(&self.host));
+        let drawings = std::mem::take(&mut self.drawings);
+        drawings.into_iter().flatten().for_each(|drawing| drawing.free(&self.host));
         self.memory.end();
         self.destroyed = true;
     }

@@ -120,7 +120,7 @@ impl ViewRenderer {
             None => vec![target, kept.unwrap_or(own_depth)],
         };
         let depth = kept.filter(|_| is_first).into_iter().collect();
-        let tone = self.tone.iter().map(|_| outputs.picture.view).collect();
+        let tone = self.linear.iter().map(|_| outputs.picture.view).collect();
         let passes =
             [self.render_passes.scene[0], self.render_passes.depth, self.render_passes.tone];
         for (index, (views, pass)) in [scene, depth, tone].into_iter().zip(passes).enumerate() {
