@@ -11,6 +11,7 @@ pub(crate) use attachment::{DEPTH, whole_attachment};
 
 /// An image or a buffer with its memory.
 #[doc(hidden)]
+#[derive(Default)]
 pub struct Backed {
     /// Null for a buffer.
     pub image: vk::Image,
@@ -109,17 +110,12 @@ impl Memory {
                         .format(vk::Format::R32G32B32A32_SFLOAT)
                         .range(vk::WHOLE_SIZE);
                     // SAFETY: the buffer was made above for this use.
-                    let view = unsafe { self.host.device.create_buffer_view(&info, None) };
-                    match view {
-                        Ok(view) => {
-                            self.host.name(view, name);
-                            backed.texels = view;
-                        }
-                        Err(result) => {
-                            self.free(&mut backed);
-                            return Err(failed(format!("viewing buffer {name}"))(result));
-                        }
-                    }
+                    let made = unsafe { self.host.device.create_buffer_view(&info, None) };
+                    let made = made.map_err(failed(format!("viewing buffer {name}"))).map(|view| {
+                        self.host.name(view, name);
+                        backed.texels = view;
+                    });
+                    return self.kept(backed, made);
                 }
                 Ok(backed)
             }
@@ -138,14 +134,15 @@ impl Memory {
             | vk::ImageUsageFlags::SAMPLED
             | vk::ImageUsageFlags::TRANSFER_SRC
             | vk::ImageUsageFlags::TRANSFER_DST;
-        self.image_for(name, (format.vk(), usage), extent, layered)
+        let one = vk::SampleCountFlags::TYPE_1;
+        self.image_for(name, (format.vk(), usage, one), extent, layered)
     }
 
-    /// An image of any colour format, for one use.
+    /// An image of any format, for one use, its memory and a view of it.
     pub(crate) fn image_for(
         &mut self,
         name: &str,
-        (format, usage): (vk::Format, vk::ImageUsageFlags),
+        (format, usage, samples): (vk::Format, vk::ImageUsageFlags, vk::SampleCountFlags),
         [width, height, layers]: [u32; 3],
         layered: bool,
     ) -> Result<Backed> {
@@ -155,42 +152,25 @@ impl Memory {
             .extent(vk::Extent3D { width, height, depth: 1 })
             .mip_levels(1)
             .array_layers(layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
         let view_type =
             if layered { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
-        self.image_of(name, &info, (view_type, whole(layers)))
-    }
-
-    /// An image, its memory and a view of it.
-    fn image_of(
-        &mut self,
-        name: &str,
-        info: &vk::ImageCreateInfo<'_>,
-        (view_type, range): (vk::ImageViewType, vk::ImageSubresourceRange),
-    ) -> Result<Backed> {
+        let range = vk::ImageSubresourceRange { layer_count: layers, ..whole_attachment(format) };
         let device = self.host.device.clone();
         // SAFETY: the device is alive, as the callers of Renderer::new and Headless guarantee; `info` is a
         // plain 2D image within the plan's limits.
-        let image = unsafe { device.create_image(info, None) }
+        let image = unsafe { device.create_image(&info, None) }
             .map_err(failed(format!("making image {name}")))?;
-        let mut backed = Backed {
-            image,
-            view: vk::ImageView::null(),
-            buffer: vk::Buffer::null(),
-            texels: vk::BufferView::null(),
-            allocation: None,
-            bytes: 0,
-            layers: info.array_layers,
-        };
+        let mut backed = Backed { image, layers, ..Backed::default() };
         // SAFETY: `image` was made above on this device.
         let requirements = unsafe { device.get_image_memory_requirements(image) };
         let made = self.take(name, requirements, MemoryUse::Device, false).and_then(|allocation| {
             let view_info = vk::ImageViewCreateInfo::default()
                 .image(image)
                 .view_type(view_type)
-                .format(info.format)
+                .format(format)
                 .subresource_range(range);
             // SAFETY: the allocation is at least as large as the image requires and bound once; the view has
             // the image's own format and layers.
@@ -201,19 +181,11 @@ impl Memory {
             };
             backed.allocation = Some(allocation);
             backed.view = view.map_err(failed(format!("making image {name}")))?;
+            self.host.name(image, name);
+            self.host.name(backed.view, name);
             Ok(())
         });
-        match made {
-            Ok(()) => {
-                self.host.name(image, name);
-                self.host.name(backed.view, name);
-                Ok(backed)
-            }
-            Err(error) => {
-                self.free(&mut backed);
-                Err(error)
-            }
-        }
+        self.kept(backed, made)
     }
 
     pub fn buffer(
@@ -228,15 +200,7 @@ impl Memory {
         // SAFETY: the device is alive; the size is not 0.
         let buffer = unsafe { device.create_buffer(&info, None) }
             .map_err(failed(format!("making buffer {name}")))?;
-        let mut backed = Backed {
-            image: vk::Image::null(),
-            view: vk::ImageView::null(),
-            buffer,
-            texels: vk::BufferView::null(),
-            allocation: None,
-            bytes,
-            layers: 0,
-        };
+        let mut backed = Backed { buffer, bytes, ..Backed::default() };
         // SAFETY: `buffer` was made above on this device.
         let requirements = unsafe { device.get_buffer_memory_requirements(buffer) };
         let made = self.take(name, requirements, used_by, true).and_then(|allocation| {
@@ -244,13 +208,16 @@ impl Memory {
             let bound =
                 unsafe { device.bind_buffer_memory(buffer, allocation.memory, allocation.offset) };
             backed.allocation = Some(allocation);
+            self.host.name(buffer, name);
             bound.map_err(failed(format!("binding buffer {name}")))
         });
+        self.kept(backed, made)
+    }
+
+    /// What was made, or the error of its making, after which it is freed.
+    fn kept(&mut self, mut backed: Backed, made: Result<()>) -> Result<Backed> {
         match made {
-            Ok(()) => {
-                self.host.name(buffer, name);
-                Ok(backed)
-            }
+            Ok(()) => Ok(backed),
             Err(error) => {
                 self.free(&mut backed);
                 Err(error)
@@ -279,11 +246,8 @@ impl Memory {
             device.destroy_buffer_view(backed.texels, None);
             device.destroy_buffer(backed.buffer, None);
         }
-        (backed.view, backed.image) = Default::default();
-        (backed.texels, backed.buffer) = Default::default();
-        if let (Some(allocation), Some(allocator)) =
-            (backed.allocation.take(), self.allocator.as_mut())
-        {
+        let allocation = std::mem::take(backed).allocation;
+        if let (Some(allocation), Some(allocator)) = (allocation, self.allocator.as_mut()) {
             allocator.free(allocation);
         }
     }

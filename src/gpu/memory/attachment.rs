@@ -35,16 +35,6 @@ impl Memory {
         if is_single != (format == DEPTH) {
             usage |= vk::ImageUsageFlags::SAMPLED;
         }
-        let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(format)
-            .extent(vk::Extent3D { width, height, depth: 1 })
-            .mip_levels(1)
-            .array_layers(1)
-            .samples(samples)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(usage);
-        let range = whole_attachment(format);
-        self.image_of(name, &info, (vk::ImageViewType::TYPE_2D, range))
+        self.image_for(name, (format, usage, samples), [width, height, 1], false)
     }
 }

@@ -58,7 +58,8 @@ impl Renderer {
         }
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let usage = usage | vk::ImageUsageFlags::TRANSFER_SRC;
-        memory.image_for(&resource.name, (format, usage), [width, height, layers], layered)
+        let of = (format, usage, vk::SampleCountFlags::TYPE_1);
+        memory.image_for(&resource.name, of, [width, height, layers], layered)
     }
 
     fn make_tables(&mut self) -> Result<Vec<(ResourceId, Backed)>> {
