@@ -27,13 +27,14 @@ pub struct Backed {
 }
 
 impl Backed {
-    /// A buffer's bytes, where it is mapped.
-    pub fn mapped(&mut self) -> Option<&mut [u8]> {
-        let begin = self.allocation.as_ref()?.mapped?;
+    /// The bytes of a buffer that was not made for the device alone: its making refuses memory that is not mapped.
+    pub fn mapped(&mut self) -> &mut [u8] {
+        let begin = self.allocation.as_ref().and_then(|allocation| allocation.mapped);
+        let begin = begin.expect("host-visible memory is mapped");
         // SAFETY: the allocator guarantees that it is mapped while allocated, at least as large as the buffer,
         // and owned by nobody else. The caller guarantees that the device is not using it, as with any mapped
         // memory.
-        Some(unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) })
+        unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) }
     }
 
     /// Eight bytes of a mapped buffer as a number, while the device may be writing them.

@@ -75,9 +75,7 @@ impl Timestamps {
         commands: vk::CommandBuffer,
         count: usize,
     ) {
-        if let Some(bytes) = self.copied.mapped() {
-            bytes.fill(0);
-        }
+        self.copied.mapped().fill(0);
         // In the command buffer too, in case it runs again.
         let buffer = self.copied.buffer;
         let last_run =

@@ -300,9 +300,7 @@ impl Screen {
     ) -> Result<Vec<[u8; 4]>> {
         let slot = &mut self.slots[slot];
         slot.settle(&self.gpu)?;
-        let mapped = slot.readback.as_mut().and_then(|b| b.mapped());
-        let mapped =
-            mapped.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))?;
+        let mapped = slot.readback.as_mut().expect("made by prepare").mapped();
         let pixels = mapped.as_chunks::<4>().0.iter().take(size[0] as usize * size[1] as usize);
         Ok(pixels.map(|p| ordered(*p, swaps)).collect())
     }
@@ -346,7 +344,7 @@ fn stage(
     let cols = frame.plan().size[0] as usize;
     let bytes = 4 * u64::from(at.cols) * u64::from(at.rows);
     let named = ("heights of a frame", bytes);
-    let mut to = mapped(fitting(gpu, place, named, MemoryUse::Upload)?)?;
+    let mut to = fitting(gpu, place, named, MemoryUse::Upload)?.mapped();
     for row in at.row..at.row + at.rows {
         let from = row as usize * cols + at.col as usize;
         let row: &[u8] = bytemuck::cast_slice(&heights[from..from + at.cols as usize]);
@@ -359,11 +357,6 @@ fn stage(
 
 fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
     if swaps { [b, g, r, a] } else { [r, g, b, a] }
-}
-
-fn mapped(backed: &mut Backed) -> Result<&mut [u8]> {
-    let mapped = backed.mapped();
-    mapped.ok_or_else(|| failed("uploading")(vk::Result::ERROR_MEMORY_MAP_FAILED))
 }
 
 impl Pane<'_> {

@@ -115,7 +115,7 @@ pub(super) fn fitting<'b>(
     (name, bytes): (&str, u64),
     used_by: MemoryUse,
 ) -> Result<&'b mut Backed> {
-    if place.as_mut().and_then(Backed::mapped).is_none_or(|m| (m.len() as u64) < bytes) {
+    if place.as_mut().is_none_or(|old| (old.mapped().len() as u64) < bytes) {
         if let Some(mut old) = place.take() {
             gpu.memory.free(&mut old);
         }

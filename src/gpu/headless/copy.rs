@@ -17,6 +17,20 @@ impl Headless {
         self.transition(commands, &ImageArg { before, ..image.arg() });
     }
 
+    /// A barrier within `commands`, which is being recorded, from all before to all after it and to the host.
+    pub(in crate::gpu) fn wait_for_all(&self, commands: vk::CommandBuffer) {
+        let (all, read) = (vk::PipelineStageFlags2::ALL_COMMANDS, vk::AccessFlags2::MEMORY_READ);
+        let barrier = [vk::MemoryBarrier2::default()
+            .src_stage_mask(all)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(read | vk::AccessFlags2::MEMORY_WRITE | vk::AccessFlags2::HOST_READ)];
+        // SAFETY: the caller guarantees that `commands` is being recorded.
+        unsafe {
+            Barriers::default().memory(&barrier).record(&self.host().device, commands);
+        }
+    }
+
     /// Copies between an image in GENERAL and host memory, several whole rows at a time.
     pub(in crate::gpu) fn copy(
         &mut self,
@@ -66,10 +80,7 @@ impl Headless {
         [layer, top, count]: [u32; 3],
         each: &mut dyn FnMut(&mut [u8]) -> Result<()>,
     ) -> Result<()> {
-        let mut touch = |staging: &mut Backed| {
-            let mapped = staging.mapped();
-            each(mapped.expect("host-visible memory is mapped"))
-        };
+        let mut touch = |staging: &mut Backed| each(staging.mapped());
         if to_image {
             touch(staging)?;
         }
@@ -77,40 +88,18 @@ impl Headless {
         region[0].image_subresource.base_array_layer = layer;
         region[0].image_offset.y = top as i32;
         let (image, buffer) = (image.backed.image, staging.buffer);
-        let barrier = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(
-                vk::AccessFlags2::MEMORY_READ
-                    | vk::AccessFlags2::MEMORY_WRITE
-                    | vk::AccessFlags2::HOST_READ,
-            )];
-        let all = Barriers::default().memory(&barrier);
+        let (device, general) = (&self.host().device, vk::ImageLayout::GENERAL);
         self.run(|commands| {
+            self.wait_for_all(commands);
             // SAFETY: the image is in GENERAL, the buffer as large as the region, both ours.
             unsafe {
-                let device = &self.host().device;
-                all.record(device, commands);
                 if to_image {
-                    device.cmd_copy_buffer_to_image(
-                        commands,
-                        buffer,
-                        image,
-                        vk::ImageLayout::GENERAL,
-                        &region,
-                    );
+                    device.cmd_copy_buffer_to_image(commands, buffer, image, general, &region);
                 } else {
-                    device.cmd_copy_image_to_buffer(
-                        commands,
-                        image,
-                        vk::ImageLayout::GENERAL,
-                        buffer,
-                        &region,
-                    );
+                    device.cmd_copy_image_to_buffer(commands, image, general, buffer, &region);
                 }
-                all.record(device, commands);
             }
+            self.wait_for_all(commands);
             Ok(())
         })?;
         if to_image { Ok(()) } else { touch(staging) }

@@ -3,8 +3,6 @@
 use ash::vk;
 
 use crate::gpu::allocator::MemoryUse;
-use crate::gpu::barriers::Barriers;
-use crate::gpu::failed;
 use crate::gpu::headless::frame::Owned;
 use crate::gpu::memory::{Backed, DEPTH, region, whole_attachment};
 use crate::gpu::{
@@ -141,13 +139,9 @@ impl Headless {
             }
             Ok(())
         })?;
-        let bytes = |backed: &mut Backed, count: usize| {
-            let bytes = backed.mapped().map(|m| m[..count].to_vec());
-            bytes.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
-        };
         Ok(Drawn {
-            picture: bytes(&mut made[2], sizes[0])?,
-            depths: bytemuck::pod_collect_to_vec(&bytes(&mut made[3], sizes[1])?),
+            picture: made[2].mapped()[..sizes[0]].to_vec(),
+            depths: bytemuck::pod_collect_to_vec(&made[3].mapped()[..sizes[1]]),
             timings: renderer.timings(0).unwrap_or_default(),
         })
     }
@@ -178,18 +172,13 @@ impl Headless {
         let [width, height, _] = image.extent;
         let mut region = [region([width, height, 1])];
         region[0].image_subresource.aspect_mask = whole_attachment(image.format).aspect_mask;
-        let written = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::COPY)
-            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
         let device = &self.host().device;
         // SAFETY: the image is left for copies by the view's recording; the buffer holds all its texels.
         unsafe {
             let layout = COPIED.layout;
             device.cmd_copy_image_to_buffer(commands, image.image, layout, buffer, &region);
-            Barriers::default().memory(&written).record(device, commands);
         }
+        self.wait_for_all(commands);
     }
 }
 

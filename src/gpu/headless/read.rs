@@ -6,7 +6,7 @@ use crate::gpu::allocator::MemoryUse;
 use crate::gpu::barriers::Barriers;
 use crate::gpu::headless::frame::Owned;
 use crate::gpu::memory::region;
-use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, failed, transition};
+use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, transition};
 use crate::graph::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 
@@ -64,17 +64,10 @@ impl Headless {
         let to = staging.buffer;
         let device = &self.host().device;
         let done = self.run(|commands| {
-            let all = vk::PipelineStageFlags2::ALL_COMMANDS;
-            let barrier = [vk::MemoryBarrier2::default()
-                .src_stage_mask(all)
-                .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-                .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
-                .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
-            let wait = Barriers::default().memory(&barrier);
+            self.wait_for_all(commands);
             // SAFETY: the frame's image is in GENERAL and its buffer may be copied from; both are
             // alive while `frame` is, and the staging buffer holds all their bytes.
             unsafe {
-                wait.record(device, commands);
                 match kind {
                     Kind::Image { width, height, layers, .. } => {
                         let region = [region([width, height, layers])];
@@ -86,18 +79,14 @@ impl Headless {
                         device.cmd_copy_buffer(commands, buffer, to, &region);
                     }
                 }
-                wait.record(device, commands);
             }
+            self.wait_for_all(commands);
             Ok(())
         });
-        let mapped = staging.mapped();
-        let words = mapped.map(|m| {
-            let texels = m[..bytes as usize].as_chunks::<4>().0;
-            texels.iter().map(|word| u32::from_ne_bytes(*word)).collect()
-        });
+        let words = staging.mapped()[..bytes as usize].as_chunks::<4>().0;
+        let words = words.iter().map(|word| u32::from_ne_bytes(*word)).collect();
         self.memory.free(&mut staging);
-        done?;
-        words.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
+        done.map(|()| words)
     }
 
     /// Share of the texels, [0..1], where SH light rang below 0 in a channel and was set to 0: of an

@@ -88,8 +88,8 @@ impl Renderer {
         }
         for (id, backed) in &mut slot.tables {
             let which = TABLES.iter().position(|name| self.plan.find(name) == Some(*id));
-            let (Some(which), Some(mapped)) = (which, backed.mapped()) else { continue };
-            mapped[..contents[which].len()].copy_from_slice(contents[which]);
+            let Some(which) = which else { continue };
+            backed.mapped()[..contents[which].len()].copy_from_slice(contents[which]);
         }
     }
 

@@ -10,10 +10,10 @@ use super::super::timestamps::Timestamps;
 use super::pipelines::Recipe;
 use super::targets::Framebuffers;
 use super::{Curve, LABELS, LINEAR, Slot, ViewRenderer};
+use crate::Result;
 use crate::graph::Format;
 use crate::passes::terrain_draw::tile_indices;
 use crate::plan::View;
-use crate::{Error, Result};
 
 impl ViewRenderer {
     pub(super) fn make(&mut self, curve: Curve, slots: usize) -> Result<()> {
@@ -83,12 +83,7 @@ impl ViewRenderer {
         let usage = vk::BufferUsageFlags::INDEX_BUFFER;
         let size = bytes.len() as u64;
         let buffer = self.memory.buffer("tile_indices", size, usage, MemoryUse::Upload)?;
-        let mapped = self.indices.insert(buffer).mapped();
-        let mapped = mapped.ok_or_else(|| Error::Device {
-            doing: "writing the indices of a tile".into(),
-            reason: "the device has no memory that the host can write".into(),
-        })?;
-        mapped[..bytes.len()].copy_from_slice(bytes);
+        self.indices.insert(buffer).mapped()[..bytes.len()].copy_from_slice(bytes);
         Ok(())
     }
 
