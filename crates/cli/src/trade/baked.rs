@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use ridgelight::gpu::{Frame, Headless};
+use ridgelight::gpu::Frame;
 use ridgelight::plan;
 use ridgelight::scene::{Bounces, Directions, Quality, Scatter, VisiblePoints};
 use ridgelight::{Error, Result};
@@ -16,6 +16,7 @@ use super::ground_truth::GroundTruth;
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
+use crate::render::rgb;
 use crate::setup::terminal::{digits, percent};
 use crate::setup::{self, total_ns};
 
@@ -116,7 +117,7 @@ fn fill(
     let fits = |more_s: f64| begun.elapsed().as_secs_f64() + more_s <= most_s;
     rig.gpu.draw(own)?;
     rig.gpu.draw(direct)?;
-    let light = colours(&mut rig.gpu, direct)?;
+    let light = rgb(&rig.gpu.pixels(direct, 0)?);
     let mut found_s = 0.0;
     for count in DIRECTIONS {
         // Time is proportional to the number of directions.
@@ -171,7 +172,7 @@ fn scattered(
     let contents = plan::scatter_inputs(&plan, rig.scene, points, light)?;
     let (ratios, scattered) = rig.gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
-        let scattered = colours(gpu, frame)?;
+        let scattered = rgb(&gpu.pixels(frame, 0)?);
         let mut ratios = Vec::new();
         for _ in 0..DRAWS {
             let beside = total_ns(&gpu.draw(own)?);
@@ -184,13 +185,6 @@ fn scattered(
     let mut planes: Vec<Vec<f32>> = (0..3).map(plane).collect();
     planes.iter_mut().for_each(|plane| setup::mask_voids(&rig.scene.field, plane, 1));
     Ok((median(&ratios).unwrap_or(1.0), planes))
-}
-
-/// The first output of a frame, voids still filled.
-fn colours(gpu: &mut Headless, frame: &Frame) -> Result<Vec<[f32; 3]>> {
-    let pixels = gpu.pixels(frame, 0)?;
-    let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
-    Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
 }
 
 impl Report<'_> {
