@@ -8,8 +8,8 @@ use crate::source::{Outcome, files, read, tracked};
 /// Pages whose paths are checked.
 const PAGES: [&str; 3] = ["CONTRIBUTING.md", "docs/adding/index.md", "docs/architecture.md"];
 
-/// The heading of the table whose answers are a path, then names in that file.
-const TABLE: &str = "\n## Where is what\n";
+/// The heading of the table. The last cell of each row gives a path, then names in that file.
+const TABLE: &str = "\n## Where to find what\n";
 
 /// Endings of files. A path with one of them must exist, whatever its first folder is.
 const ENDINGS: [&str; 5] = [".rs", ".comp", ".glsl", ".md", ".h"];
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(of("`src/b`, then `b/a.rs`"), ["src/b does not exist", "b/a.rs does not exist"]);
         let table = |answer: &str| {
             of(&format!(
-                "# A\n\n## Where is what\n\n| | |\n|---|---|\n| `x` | {answer} |\n\n## B\n\n| `y` | `z` |\n"
+                "# A\n\n## Where to find what\n\n| | |\n|---|---|\n| `x` | {answer} |\n\n## B\n\n| `y` | `z` |\n"
             ))
         };
         assert!(table("`src/a.rs`: `own`, `place_all`").is_empty());
