@@ -64,14 +64,14 @@ struct Values {
 }
 
 impl Values {
-    /// A sentence on what 0 and 255 of a .png are, unless they are themselves.
+    /// A sentence that states what 0 and 255 of a .png stand for; empty where values are stored as they are.
     fn png_range(&self) -> String {
         let ([black, white], unit) = (self.png, self.unit);
         if self.png == [0.0, 255.0] {
             return String::new();
         }
         let blank = if unit.is_empty() { "" } else { " " };
-        format!(" 0 to 255 are values of {black} to {white}{blank}{unit}.")
+        format!(" Pixel values 0 to 255 stand for {black} to {white}{blank}{unit}.")
     }
 }
 

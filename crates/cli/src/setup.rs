@@ -76,8 +76,8 @@ pub fn georeferenced(
     if surface.bbox.is_none() {
         paths.iter().try_for_each(|path| check_size(path, global))?;
     }
-    let lacks = "which casts no shadow into it; for its shadows, use a wider box";
-    reported(paths, read(paths, surface)?, surface, lacks, global)
+    let effect = "which casts no shadow into it; for its shadows, use a wider box";
+    reported(paths, read(paths, surface)?, surface, effect, global)
 }
 
 /// The same, for commands that need no device and no distant ground.
@@ -86,16 +86,17 @@ pub fn of_neighbours(
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let lacks = "so slopes at its edges are those of the cells inside; for others, use a box that is wider by a cell";
-    reported(paths, read_file(paths, surface)?, surface, lacks, global)
+    let effect = "so slopes at its edges are computed from the cells inside; for those of the whole field, use a box that is \
+        wider by a cell";
+    reported(paths, read_file(paths, surface)?, surface, effect, global)
 }
 
-/// Prints a file's warnings and notes. `lacks` is what a box misses of the ground outside.
+/// Prints a file's warnings and notes. `effect` states what a box changes, and which box avoids it.
 fn reported(
     paths: &[PathBuf],
     read: files::FieldFile,
     surface: &FieldArgs,
-    lacks: &str,
+    effect: &str,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
     let files::FieldFile { field, georeference, notes, warnings, .. } = read;
@@ -108,7 +109,7 @@ fn reported(
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
         if let Some([west, south, east, north]) = surface.bbox {
             note(&format!(
-                "{name}: read without the ground outside --bbox, {lacks} and cut the result: \
+                "{name}: read without the ground outside --bbox, {effect} and cut the result: \
                 `gdal_translate -projwin {west} {north} {east} {south} wide.tif out.tif`"
             ));
         }

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::values::{colour, number, numbers};
 
-// Doc comments of these two would replace the descriptions of the commands.
+// A doc comment on this struct or the next would replace the description of a command.
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
 pub struct EyeArgs {

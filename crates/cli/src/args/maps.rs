@@ -36,8 +36,8 @@ pub const AO_HELP: &str = "\
 The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
 horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. gdaldem has no such map.
 
-A .png has 0 to 1 as 0 to 255, not stretched, so mountains are nearly white. For full contrast write a .tif, which QGIS \
-draws so, or convert it as in the example.
+A .png maps 0 to 1 to the values 0 to 255, so mountains are nearly white. For full contrast write a .tif, which QGIS \
+stretches, or convert it as in the example.
 
 Examples:
   ridgelight ao dem.tif -o ao.tif
@@ -48,7 +48,7 @@ The map `sky-view` of `bake`: flat open ground is 1, a slope of angle a is (1 + 
 2011) weights all directions above the horizontal equally, up to 10 pixels away; `visible-sky` of `bake` is the same for \
 horizons of any distance.
 
-A .png has 0.6375 to 1 as 0 to 255, the fixed range of RVT's 8-bit files; lower values are 0. A .tif has all values.
+A .png maps 0.6375 to 1 to the values 0 to 255, as RVT's 8-bit files do; lower values become 0. A .tif has all values.
 
 Examples:
   ridgelight svf dem.tif -o svf.tif
@@ -71,8 +71,9 @@ pub struct MapArgs {
     pub input: Input,
     /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
     ///
-    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, shadow
-    /// and ao have 0 to 1 as 0 to 255, svf has 0.6375 to 1, openness has 60 to 95 degrees. Voids are NaN, or transparent.
+    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade is stored as it is,
+    /// rounded; of the others a fixed range becomes 0 to 255: shadow and ao 0 to 1, svf 0.6375 to 1, openness 60 to 95 degrees. Voids
+    /// are transparent in a .png, else NaN.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -5,14 +5,14 @@ use clap::{Args, ValueEnum};
 use super::values::{BOUNCES, ERROR, SEED, number};
 use super::{EyeArgs, GlobalArgs, Input, LightArgs, SurfaceArgs};
 
-// Its camera draws no picture.
+// The camera draws no picture here: its flags have help of their own.
 #[derive(Args)]
 #[command(
     mut_arg("camera", |arg| {
         arg.help("View --specular from a camera, as `render --camera` does").long_help(
             "View --specular from a camera, as `render --camera` does\n\nThe result still has one pixel per texel. FROM, --look-at, \
-            --fov, --ortho, --size and --plinth place the camera as in `render`, and the default sun stands as there. Light \
-            without specular does not depend on it.",
+            --fov, --ortho, --size and --plinth place the camera as in `render`. The default sun is where `render` puts it for \
+            this camera. Light without specular does not depend on the camera.",
         )
     }),
     mut_arg("size", |arg| {

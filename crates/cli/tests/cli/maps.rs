@@ -149,8 +149,8 @@ fn a_hillshade_of_a_box_has_a_note_on_its_edges() {
     let bbox = ["--bbox", "1010,2010,1040,2040"];
     let whole = run(&["hillshade", "a.asc", "-o", "whole.npy"]);
     let part = run(&["hillshade", "a.asc", "-o", "part.npy", bbox[0], bbox[1]]);
-    let said = "a.asc: read without the ground outside --bbox, so slopes at its edges are those of the cells inside; for \
-                others, use a box that is wider by a cell and cut the result: `gdal_translate -projwin 1010 2040 1040 2010";
+    let said = "a.asc: read without the ground outside --bbox, so slopes at its edges are computed from the cells inside; \
+                for those of the whole field, use a box that is wider by a cell and cut the result: `gdal_translate -projwin 1010 2040 1040 2010";
     assert!(part.contains(said) && !part.contains("shadow"), "{part}");
     assert!(!whole.contains("--bbox"), "{whole}");
     let plan = run(&["plan", "a.asc", bbox[0], bbox[1]]);
@@ -236,8 +236,8 @@ fn gpu_pictures_of_sky_view_have_fixed_ranges() {
     let between = values.iter().filter(|v| (0.65..0.99).contains(*v)).count();
     assert!(values[8 * SIDE + 8] < 0.5 && values[0] > 0.99 && between > 0, "{values:?}");
     for (command, [black, white], said) in [
-        ("svf", [0.6375, 1.0], ". 0 to 255 are values of 0.6375 to 1.\n"),
-        ("ao", [0.0, 1.0], ". 0 to 255 are values of 0 to 1.\n"),
+        ("svf", [0.6375, 1.0], ". Pixel values 0 to 255 stand for 0.6375 to 1.\n"),
+        ("ao", [0.0, 1.0], ". Pixel values 0 to 255 stand for 0 to 1.\n"),
     ] {
         let run = succeeded(&folder, &format!("{command} field.npy -o o.png"));
         assert!(run.out.ends_with(said), "{}", run.out);
@@ -250,9 +250,9 @@ fn gpu_pictures_of_sky_view_have_fixed_ranges() {
         }
     }
     let run = succeeded(&folder, "openness field.npy -o o.png");
-    assert!(run.out.ends_with(". 0 to 255 are values of 60 to 95 deg.\n"), "{}", run.out);
+    assert!(run.out.ends_with(". Pixel values 0 to 255 stand for 60 to 95 deg.\n"), "{}", run.out);
     let run = succeeded(&folder, "openness field.npy -o o.tif");
-    assert!(!run.out.contains("are values of"), "{}", run.out);
+    assert!(!run.out.contains("stand for"), "{}", run.out);
 }
 
 /// On a slope of angle a, (1 + cos a)/2 of the cosine-weighted hemisphere is above the horizontal and the slope.

@@ -327,7 +327,7 @@ fn gpu_trade_against_a_reference() {
         ),
         (
             "viewed.exr --sky 1 --albedo 0.5 --specular 9,0.25",
-            "expected none: specular is viewed from straight above here",
+            "expected none: `trade` views specular from straight above",
         ),
     ] {
         let args = format!("trade field.npy -o other --evaluations 1 --reference {args}");
