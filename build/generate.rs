@@ -72,7 +72,7 @@ fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
     if modules.len() != sources.len() {
         let (path, found, expected) = (path.display(), modules.len(), sources.len());
         fail(&format!(
-            "{path}: found {found} modules, expected {expected}, one of each shader; run tools/shaders"
+            "{path}: found {found} modules, expected {expected}, one per shader; run tools/shaders"
         ));
     }
     modules

@@ -76,7 +76,7 @@ layout(push_constant) uniform PathTracePush {
     uint seed;
     int first_row;
     int keys;              // after the suns
-    // Devices guarantee 128 bytes, and this struct has 128: the Phong constants use the fourth numbers of the colours.
+    // Devices guarantee 128 bytes, and this struct has 128: the Phong constants are the fourth components of the colours.
     vec4 albedo_exponent;  // albedo where it is constant; w: Phong exponent where it is constant
     vec4 sky_scale;        // radiance of the sky; w: Phong scale where it is constant
     vec4 eye_m;            // over the field's base; w: 0 for a view from straight above
@@ -163,7 +163,7 @@ Place grid_point(ivec2 at) {
     return place;
 }
 
-// Mirror direction of the view at a grid point, as pictures have it.
+// Mirror direction of the view at a grid point, as in pictures.
 vec3 mirror_of_view(Place place) {
     vec2 at_m = vec2(float(place.base.x) * land.cell_x_m, float(land.rows - 1 - place.base.y) * land.cell_y_m);
     vec3 normal = place.normal;
@@ -377,7 +377,7 @@ void main() {
     }
     Place place = grid_point(here);
     if (HAS_SPECULAR) {
-        // Only the first vertex is viewed by the eye; later ones by the path before.
+        // Only the first vertex is viewed from the eye; each later one from the vertex before it.
         place.mirror = mirror_of_view(place);
     }
     vec4 before = imageLoad(batch_mean, slot);

@@ -51,7 +51,7 @@ pub(crate) fn place_barriers(passes: &mut [Pass]) {
 
 /// Every pair of passes (earlier, later) with a hazard and no barrier in between: empty for a correct plan.
 ///
-/// Written independently of the placement of barriers, as its check: it tests each pair alone.
+/// Written independently of the placement of barriers, to check it: each pair is tested alone.
 pub fn missing_barriers(passes: &[Pass]) -> Vec<(usize, usize)> {
     let mut missing = Vec::new();
     for later in 0..passes.len() {

@@ -40,7 +40,7 @@ fn tiles_without_bytes_are_no_data() {
     }
 }
 
-/// A small file cannot claim any size: one tile in 1032 at least has bytes.
+/// A small file cannot claim any size: it has at least 1/1032 of the bytes of its values.
 #[test]
 fn a_claim_without_any_bytes_is_refused() {
     let bytes = sparse_tiff(4096, [2, 1], &[None; 2], Some("-9999"));

@@ -35,7 +35,7 @@ fn shiny(field: HeightField, albedo: f32, exponent: f32) -> Scene {
 /// Rough ground from an eye in the west, so low that some texels face away from it. The sky is red, the sun green, blue is
 /// both. The comparison fails against a view from straight above.
 #[test]
-fn paths_mirror_the_eye_as_the_oracle_does() {
+fn paths_view_specular_from_the_eye_as_the_oracle_does() {
     const SIDE: usize = 9;
     let mut device = Device::new();
     let mut next = random(61);
@@ -72,11 +72,11 @@ fn paths_mirror_the_eye_as_the_oracle_does() {
     assert!(!above.holds(), "cannot fail: {above:?}");
 }
 
-/// Level ground, where nothing hides light: paths give the picture from the same eye, within six standard errors, that of
-/// unsampled light included, and the picture's own error. That is 2/128 of the lobe for tables and maps of the sky, and the
-/// rings of the sun's disc. The picture from straight above differs.
+/// Level ground, where nothing hides light: paths agree with the picture from the same eye. The tolerance is six standard errors,
+/// that of unsampled light included, and the picture's own error: 2/128 of the lobe for tables and maps of the sky, and the rings
+/// of the sun's disc. The picture from straight above differs.
 #[test]
-fn paths_from_an_eye_are_the_picture_from_there() {
+fn paths_agree_with_the_picture_from_the_same_eye() {
     const SIDE: usize = 12;
     let mut device = Device::new();
     let mut scene = shiny(field(SIDE, SIDE, [1.0, 1.0], |_, _| 3.0), 0.0, 20.0);
@@ -107,8 +107,8 @@ fn paths_from_an_eye_are_the_picture_from_there() {
     assert!(above > 10.0, "cannot fail: {above}");
 }
 
-/// Of all texels of level ground the one whose view direction is the sun's mirrored one is the brightest, as in pictures. A
-/// point sun and black ground: one path has all light.
+/// On level ground the brightest texel is the one whose view direction mirrors the sun, as in pictures. A point sun and black
+/// ground: one path has all light.
 #[test]
 fn a_highlight_of_paths_follows_the_eye() {
     const SIDE: usize = 21;

@@ -1,6 +1,6 @@
 //! Azimuths as files have them: compass degrees, clockwise from north.
 
-/// Decimals of an azimuth in a name. 360°/1024, of the most azimuths that a horizon has, is 0.3515625°.
+/// Decimals of an azimuth in a name. There are at most 1024 azimuths, and 360°/1024 is 0.3515625°.
 const DECIMALS: usize = 7;
 
 /// The layers of a file, one for each azimuth, in compass order.
@@ -32,7 +32,7 @@ impl Compass {
     }
 
     /// Names of the layers: "azimuth_000.0", "azimuth_005.625". Each has as many decimals as its azimuth, at least 1 and at
-    /// most [`DECIMALS`]: more only where two names would be equal.
+    /// most [`DECIMALS`], or more where two names would be equal.
     pub fn names(&self) -> Vec<String> {
         let named = |decimals: usize| -> Vec<String> {
             let name = |degrees: &f64| {

@@ -201,13 +201,13 @@ impl<'a> Site<'a> {
         Self { oracle, place, receivers, maxima: None }
     }
 
-    /// The same, with faster horizons of equal bits, where there are maxima of the oracle's field.
+    /// The same. With maxima of the oracle's field, horizons are found in less time, with the same bits.
     pub(crate) fn skipping(self, maxima: Option<&'a Maxima>) -> Self {
         Self { maxima, ..self }
     }
 
-    /// [`Oracle::elevation_rad`] along an azimuth. `first_cells` is 0 at first and then that of an azimuth nearby, which is
-    /// faster: see [`Maxima::elevation_rad`].
+    /// [`Oracle::elevation_rad`] along an azimuth. `first_cells` is 0 for the first azimuth; kept for an azimuth nearby, it saves
+    /// time: see [`Maxima::elevation_rad`].
     pub(crate) fn horizon_rad(&self, azimuth_rad: f64, first_cells: &mut usize) -> f64 {
         let Self { oracle, place, .. } = *self;
         match self.maxima {

@@ -3,18 +3,18 @@
 //! Over a piece of a ray no slope exceeds that of the highest grid point around the piece at the piece's nearer end, or at
 //! its farther end where that grid point lies below the ray's own. Blocks of heights hold the highest grid points. Pieces
 //! that might hold a better slope are visited crossing by crossing, as [`Oracle`] visits all: the best slope has the same
-//! bits, whichever piece comes first. That is the piece with the horizon of the azimuth before, which is rarely far from the
-//! next one's: the best slope is then known almost at once.
+//! bits, whichever piece comes first. The first piece is the one that held the horizon of the previous azimuth. The next horizon
+//! is usually near it, so the best slope is found early.
 
 use super::oracle::{Family, Oracle, Ray, elevation_of_slope, grid_direction};
 
-/// The shortest piece, in cells along the axis that the ray crosses faster: two to this power. Each further level of blocks
+/// The length of the shortest piece, in cells along the axis that the ray crosses faster, is two to this power. Each further level of blocks
 /// doubles it.
 const FINEST: usize = 2;
 
 /// How far, in cells, rounding may move a crossing out of its piece. Coordinates are below 2³² and have errors of a few
 /// 2⁻⁵³ of that, 1e-6.
-const HAIR_CELLS: f64 = 1e-5;
+const SLACK_CELLS: f64 = 1e-5;
 
 /// Rounding of slopes and of interpolated heights, relative to the largest |height|: an upper bound of some 1e-15.
 const ROUNDING: f64 = 1e-12;
@@ -109,7 +109,7 @@ impl Maxima {
             let far = (start + length) as f64;
             let corner = [0, 1].map(|axis| {
                 let ends = [near, far].map(|cells| here[axis] + cells * per_cell[axis]);
-                let least = ends[0].min(ends[1]) - HAIR_CELLS;
+                let least = ends[0].min(ends[1]) - SLACK_CELLS;
                 least.clamp(0.0, last[axis]) as u32 as usize >> length_bits
             });
             let rise_m = self.levels[level].highest_m(corner) - ray.own_m + self.slack_m;
@@ -187,11 +187,11 @@ fn highest(all: impl Iterator<Item = f32>) -> f32 {
     all.fold(f32::NEG_INFINITY, f32::max)
 }
 
-/// Where a ray has left the field, in cells; at most [`HAIR_CELLS`] later than its border.
+/// Where a ray has left the field, in cells; at most [`SLACK_CELLS`] beyond its border.
 fn end_cells(here: [f64; 2], per_cell: [f64; 2], last: [f64; 2]) -> f64 {
     let ends = [0, 1].map(|axis| {
         let room = if per_cell[axis] > 0.0 { last[axis] - here[axis] } else { here[axis] };
-        (room + HAIR_CELLS) / per_cell[axis].abs()
+        (room + SLACK_CELLS) / per_cell[axis].abs()
     });
     ends[0].min(ends[1])
 }
@@ -202,7 +202,7 @@ mod tests {
     use ridgelight::scene::{Border, HeightField};
     use std::f64::consts::TAU;
 
-    /// Against a visit of every crossing: one that knows no highest point ends nowhere before the border. Rough ground, two
+    /// Compared with an oracle that knows no highest point: it visits every crossing up to the border. Rough ground, two
     /// hills, a plateau with walls, a plane, level ground, and rough ground with a deep hole; sizes that blocks do not divide, and
     /// lines.
     #[test]
@@ -279,7 +279,7 @@ mod tests {
     /// others: the first, as nothing bounds slopes at the grid point itself; that from 32, whose block ends at column 37
     /// (37² / 32 is 42.8); and the last.
     #[test]
-    fn the_piece_of_the_last_horizon_saves_others() {
+    fn a_walk_from_the_last_horizon_visits_fewer_pieces() {
         let height = |i: usize| if i % 64 <= 40 { ((i % 64) * (i % 64)) as f64 } else { 0.0 };
         let heights: Vec<f64> = (0..3 * 64).map(height).collect();
         let field = HeightField::new(3, 64, &heights, [1.0; 2], None).unwrap();
@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(first, 36);
     }
 
-    /// Each block is the maximum of the rows and columns that its page states.
+    /// Each block is the maximum of the rows and columns that [`Level`] states.
     #[test]
     fn blocks_hold_their_highest_grid_points() {
         let [rows, cols] = [23, 38];

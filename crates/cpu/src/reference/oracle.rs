@@ -136,7 +136,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// The ray from a grid point along (columns, rows), a vector of any length. None where that is no direction.
+    /// The ray from a grid point along (columns, rows), a vector of any length. None where its length is 0 or not finite.
     pub(super) fn ray(
         &self,
         [row, col]: [usize; 2],

@@ -133,7 +133,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// The same viewed from an eye as the device has it, over the field's base.
+    /// The same, with specular viewed from an eye in f32 over the field's base, as on the device.
     pub fn viewed_from(self, eye_m: Option<[f32; 3]>) -> Self {
         Self { eye_m: eye_m.map(given), ..self }
     }

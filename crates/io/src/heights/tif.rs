@@ -384,7 +384,7 @@ impl Target<'_> {
     }
 }
 
-/// The greatest expansion of a file without some of its strips or tiles: at least one in 1032 has bytes.
+/// The greatest expansion of a file without some of its strips or tiles: it has at least 1/1032 of the bytes of its values.
 const SPARSE_RATIO: u64 = open::DEFLATE_RATIO;
 
 /// The greatest expansion of a compression method, by its TIFF number.

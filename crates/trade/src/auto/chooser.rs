@@ -268,7 +268,8 @@ impl<'a> Chooser<'a> {
         self.model.expected(quality).error
     }
 
-    /// How far bounds lie above estimates, by the last frame that was not its own control. Nothing is known of frames beyond f32.
+    /// How far bounds lie above estimates, by the last frame that was not its own control. Frames with values beyond f32
+    /// have neither and are left out.
     fn doubt(&self) -> f64 {
         let mut last = self.trials.iter().skip(1).rev();
         let last = last.find(|t| t.measured != Measured::UNKNOWN);

@@ -70,7 +70,7 @@ fn known(scene: &Scene) -> Result<Vec<usize>> {
     Ok(known)
 }
 
-/// What [`picks`] takes, of known texels.
+/// The weights of known texels, for [`picks`].
 fn weights(known: &[usize], unsure: &[f64]) -> Vec<f64> {
     known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect()
 }
@@ -141,7 +141,7 @@ impl Probes {
         Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, own_rms })
     }
 
-    /// Starts to compute the light of the texels of [`by`](Self::by), or where `unsure` is not known yet of those that do not
+    /// Starts to compute the light of the texels of [`by`](Self::by). Before `unsure` is known, only of those that do not
     /// depend on it.
     ///
     /// # Errors

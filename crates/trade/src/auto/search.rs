@@ -130,7 +130,7 @@ struct Judge<'a, 't> {
     oracle: &'a OracleLight<'a>,
     bounced: Option<Bounced<'t>>,
     batches: u32,
-    /// Where probes concentrate, the affordable number, the number of texels without void, and the next seed.
+    /// Where probes concentrate, the affordable number, the number of texels that are not voids, and the next seed.
     unsure: Vec<f64>,
     affordable: usize,
     texels: usize,
@@ -229,7 +229,8 @@ impl<'a, 't> Judge<'a, 't> {
         self.traced(probes)
     }
 
-    /// Starts to compute the light of texels that confirm the next choice, whichever it is: of these many, as more may be wanted.
+    /// Starts to compute the light of `count` texels that confirm the next choice, before it is made. [`Self::confirming`] adds
+    /// others where more are wanted.
     fn request(&mut self, count: usize) -> Result<Requested> {
         let seed = self.new_seed();
         Probes::request(self.oracle, count, seed, Some(self.unsure.as_slice()))?;
@@ -238,8 +239,8 @@ impl<'a, 't> Judge<'a, 't> {
 
     /// Probes that confirm a choice: the requested ones, and others of a new seed where more are wanted; or all texels.
     ///
-    /// The two sets are independent, and each probe's factor is that of its own set. The mean over each set is unbiased, so
-    /// that over both is.
+    /// The two sets are independent, and each probe's factor is that of its own set. The mean over each set is unbiased, and
+    /// so is the mean over both.
     fn confirming(&mut self, requested: Requested, wanted: usize) -> Result<Probes> {
         let first = if wanted >= self.texels { wanted } else { requested.count };
         let mut probes = Probes::by(self.oracle, first, requested.seed, &self.unsure)?;

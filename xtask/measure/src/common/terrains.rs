@@ -20,7 +20,7 @@ pub const OF_A_FOLDER: [(&str, Ground); 3] = [
     (inputs::MOSS, Ground::Moss),
 ];
 
-/// What a field is.
+/// The kind of a field.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Ground {
     /// Measured mountains.
@@ -75,7 +75,7 @@ pub fn terrains(folder: Option<&Path>, [mountain, side]: [usize; 2]) -> Result<V
     Ok(all)
 }
 
-/// As flags have it.
+/// The value of `--border`.
 pub fn border_name(border: Border) -> String {
     format!("{border:?}").to_lowercase()
 }

@@ -1,4 +1,4 @@
-//! What the default is compared under: lights and bare horizons, with their settings, exact results and goals.
+//! The lights under which the default is compared, and horizons without light: settings, exact results and goals.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub const FINER: u32 = 4;
 const FINEST: u32 = 128;
 /// Grid points whose horizons by `--lines exact` are compared with the oracle.
 pub const PICKS: usize = 256;
-/// Turns of settings, and of those that take about ten times as long as the default or more.
+/// Turns of most settings, and of those that take about ten times as long as the default or longer.
 pub const TURNS: usize = 7;
 const FEW_TURNS: usize = 1;
 
@@ -72,7 +72,7 @@ fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
     Light { name, kind: Kind::Key, lights: Lights { keys: vec![key], ..Lights::default() } }
 }
 
-/// The default, which is first, and its rivals.
+/// The default, which is first, and the settings that it is compared with.
 pub fn modes(kind: Kind) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };

@@ -73,7 +73,7 @@ pub fn run(mut args: Args) -> Outcome {
          against brute force in {} slices; `--lines exact` refuses key lights\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
          f64 oracle in theirs at {PICKS} grid points\n\
-         Frontier: no faster setting of this table has errors that are at most as large, as printed",
+         Frontier: yes where no faster setting of this table has errors that are at most as large, in the printed decimals",
         device(&gpu),
         FINER * sun_azimuths
     );

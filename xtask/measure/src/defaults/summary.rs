@@ -1,4 +1,4 @@
-//! What the default reaches: a row for each light, over all terrains and borders and over those of each ground.
+//! Errors of the default: a row for each light, over all terrains and borders and over those of each ground.
 
 use super::light::{Kind, Light};
 use super::{Errors, Row};

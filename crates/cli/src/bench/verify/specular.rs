@@ -171,7 +171,8 @@ fn slices_of(scene: &Scene, phong: PhongSpecular, places: &[usize]) -> Vec<DVec3
     places.iter().map(at).collect()
 }
 
-/// Half the error of the mirror direction of the zenith, besides the normal's: two products and a difference.
+/// Half the rounding error of the mirror direction for a view from above, without that of the normal: two products and a
+/// difference.
 const VIEW_ERROR: f64 = 10.0 * EPSILON;
 
 /// Error of a field's normals, radians.

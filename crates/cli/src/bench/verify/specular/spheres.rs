@@ -123,7 +123,7 @@ mod tests {
     use ridgelight::scene::{Lights, PhongSpecular, Quality, Specular, SphereLight, Surface};
     use std::f64::consts::TAU;
 
-    /// Around a texel slices are half a deviation of the lobe wide at most. Wrong light is refused: sharper, duller, of a light moved
+    /// Around a texel, slices are at most half a standard deviation of the lobe wide. Wrong light is refused: sharper, duller, of a light moved
     /// by a fifth of a cell or a tenth wider.
     #[test]
     fn wrong_specular_of_sphere_lights_is_refused() {
