@@ -37,7 +37,7 @@ The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about 
 horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. gdaldem has no such map.
 
 A .png maps 0 to 1 to the values 0 to 255, so mountains are nearly white. For full contrast write a .tif, which QGIS \
-stretches, or convert it as in the example.
+draws from its lowest to its highest value, or convert it as in the example.
 
 Examples:
   ridgelight ao dem.tif -o ao.tif
