@@ -21,12 +21,14 @@ mod op {
     pub const TYPE_STRUCT: u32 = 30;
     pub const TYPE_FUNCTION: u32 = 33;
     pub const CONSTANT_TRUE: u32 = 41;
+    pub const CONSTANT: u32 = 43;
     pub const SPEC_CONSTANT_TRUE: u32 = 48;
     pub const SPEC_CONSTANT_FALSE: u32 = 49;
     pub const SPEC_CONSTANT: u32 = 50;
     pub const SPEC_CONSTANT_COMPOSITE: u32 = 51;
     pub const SPEC_CONSTANT_OP: u32 = 52;
     pub const FUNCTION: u32 = 54;
+    pub const FUNCTION_END: u32 = 56;
     pub const VARIABLE: u32 = 59;
     pub const DECORATE: u32 = 71;
     pub const MEMBER_DECORATE: u32 = 72;
@@ -108,8 +110,9 @@ pub(crate) struct Layouts {
 /// Reflects one shader and adds the layouts of its structs. Structs of one name must have one layout in all
 /// shaders.
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
-    let d = Declarations::read(words)
-        .unwrap_or_else(|| fail(&format!("{name}: an instruction is longer than its module")));
+    let d = Declarations::read(words).unwrap_or_else(|| {
+        fail(&format!("{name}: the SPIR-V is cut off: found no OpFunctionEnd at its end"))
+    });
     let (push, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
     Reflection { push, bindings, constants: constants(name, &d) }
@@ -201,8 +204,13 @@ fn push_type(
             array(*column, *count, Some(("MatrixStride", columns)))
         }
         (op::TYPE_ARRAY, [element, count]) => {
-            let count = d.value(*count).operands[0];
-            array(*element, count, Some(("ArrayStride", d.of(target, decoration::ARRAY_STRIDE))))
+            let size = d.value(*count);
+            let (op::CONSTANT, [count]) = (size.code, size.operands) else {
+                fail(&format!(
+                    "{name}: push constants: the size of an array: expected an OpConstant of 32 bits"
+                ))
+            };
+            array(*element, *count, Some(("ArrayStride", d.of(target, decoration::ARRAY_STRIDE))))
         }
         (op::TYPE_STRUCT, held) => {
             let structure = d.name(target);
@@ -327,17 +335,25 @@ struct Value<'m> {
 }
 
 impl<'m> Declarations<'m> {
-    /// `None` where an instruction is longer than the module.
+    /// `None` where the module does not end with the end of a function. The code of functions is walked, too: a module that
+    /// is cut off there has all declarations.
     fn read(words: &'m [u32]) -> Option<Self> {
         let (mut names, mut decorations) = (HashMap::new(), HashMap::new());
         let mut values = BTreeMap::new();
         // After the header.
         let mut rest = words.get(5..)?;
+        let (mut is_declared, mut last) = (false, 0);
         while let [first, ..] = *rest {
             let (instruction, others) = rest.split_at_checked((first >> 16) as usize)?;
-            rest = others;
+            // An instruction of no words would be read for ever.
+            let (_, body) = instruction.split_first()?;
+            (rest, last) = (others, first & 0xffff);
+            is_declared |= last == op::FUNCTION;
+            if is_declared {
+                continue;
+            }
             let first_of = |operands: &[u32]| operands.first().copied().unwrap_or(0);
-            match (first & 0xffff, instruction.get(1..)?) {
+            match (last, body) {
                 (op::NAME, [target, text @ ..]) => {
                     names.insert((*target, None), string(text));
                 }
@@ -359,11 +375,10 @@ impl<'m> Declarations<'m> {
                 ) => {
                     values.insert(*id, Value { code, of_type: *of_type, operands });
                 }
-                (op::FUNCTION, _) => break,
                 _ => {}
             }
         }
-        Some(Self { names, decorations, values })
+        (last == op::FUNCTION_END).then_some(Self { names, decorations, values })
     }
 
     /// All values of an opcode, with their ids.

@@ -15,6 +15,12 @@ fn fail(message: &str) -> ! {
 
 type Member = (u32, Option<u32>);
 
+const FUNCTION: u32 = (1 << 16) | 54;
+/// The last instruction of a whole module.
+const FUNCTION_END: u32 = (1 << 16) | 56;
+/// A module's first five words.
+const HEADER: [u32; 5] = [0x0723_0203, 0, 0, 0, 0];
+
 /// Reflects push constants: `add` gives types and offsets of the members of `TestPush`.
 fn reflected(add: impl FnOnce(&mut Builder) -> Vec<Member>) -> (Reflection, Layouts) {
     let mut builder = Builder::new();
@@ -30,8 +36,10 @@ fn reflected(add: impl FnOnce(&mut Builder) -> Vec<Member>) -> (Reflection, Layo
     }
     let pointer = builder.type_pointer(None, StorageClass::PushConstant, structure);
     builder.variable(pointer, None, StorageClass::PushConstant, None);
+    let mut words = builder.module().assemble();
+    words.push(FUNCTION_END);
     let mut layouts = Layouts::default();
-    let found = reflect::reflect("test", &builder.module().assemble(), &mut layouts);
+    let found = reflect::reflect("test", &words, &mut layouts);
     (found, layouts)
 }
 
@@ -65,11 +73,34 @@ fn matrix(builder: &mut Builder, stride: Option<u32>, order: Decoration) -> u32 
     matrix
 }
 
+/// Reflects a module of these instructions.
+fn read(instructions: &[u32]) {
+    reflect::reflect("test", &[&HEADER[..], instructions].concat(), &mut Layouts::default());
+}
+
+/// OpFunction, OpFunctionEnd: neither declares anything.
+#[test]
+fn modules_that_end_with_a_function_are_whole() {
+    read(&[FUNCTION, FUNCTION_END]);
+}
+
 /// An instruction of two words, of which the module has one.
 #[test]
-#[should_panic(expected = "an instruction is longer than its module")]
-fn modules_that_end_too_early_are_refused() {
-    reflect::reflect("test", &[0x0723_0203, 0, 0, 0, 0, 2 << 16], &mut Layouts::default());
+#[should_panic(expected = "the SPIR-V is cut off")]
+fn modules_that_end_in_an_instruction_are_refused() {
+    read(&[FUNCTION, 2 << 16]);
+}
+
+#[test]
+#[should_panic(expected = "the SPIR-V is cut off")]
+fn modules_that_end_in_a_function_are_refused() {
+    read(&[FUNCTION, FUNCTION_END, FUNCTION]);
+}
+
+#[test]
+#[should_panic(expected = "the SPIR-V is cut off")]
+fn instructions_of_no_words_are_refused() {
+    read(&[0, FUNCTION_END]);
 }
 
 /// The last member ends before another one: 8 + 4·4 = 24 bytes.
@@ -101,6 +132,19 @@ fn arrays_with_gaps_are_refused() {
 #[should_panic(expected = "ArrayStride: found none, expected 4")]
 fn arrays_without_a_stride_are_refused() {
     reflected(|b| vec![(floats(b, 4, None), Some(0))]);
+}
+
+/// Rust's array has one size, whatever the constant is specialised to.
+#[test]
+#[should_panic(expected = "the size of an array: expected an OpConstant")]
+fn arrays_of_a_specialised_size_are_refused() {
+    reflected(|b| {
+        let (float, uint) = (b.type_float(32, None), b.type_int(32, 0));
+        let count = b.spec_constant_bit32(uint, 4);
+        let array = b.type_array(float, count);
+        b.decorate(array, Decoration::ArrayStride, [Operand::LiteralBit32(4)]);
+        vec![(array, Some(0))]
+    });
 }
 
 #[test]
