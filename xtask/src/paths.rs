@@ -86,7 +86,9 @@ fn complaints(
     known: &BTreeSet<String>,
     contents: impl Fn(&str) -> Outcome,
 ) -> Result<Vec<String>, String> {
-    let missing = quoted(page).filter(|path| is_path(path, known) && !known.contains(*path));
+    // `tools/test --all` is a path with arguments.
+    let words = quoted(page).map(|word| word.split(' ').next().unwrap_or(word));
+    let missing = words.filter(|path| is_path(path, known) && !known.contains(*path));
     let mut wrong: Vec<_> = missing.map(|path| format!("{path} does not exist")).collect();
     for answer in answers(page) {
         let mut file = None;
@@ -137,6 +139,7 @@ mod tests {
                 .is_empty()
         );
         assert_eq!(of("`src/b`, then `b/a.rs`"), ["src/b does not exist", "b/a.rs does not exist"]);
+        assert_eq!(of("`src/b --all`, `src/a.rs --all`"), ["src/b does not exist"]);
         let table = |answer: &str| {
             of(&format!(
                 "# A\n\n## Where to find what\n\n| | |\n|---|---|\n| `x` | {answer} |\n\n## B\n\n| `y` | `z` |\n"
