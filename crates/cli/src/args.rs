@@ -161,6 +161,10 @@ impl Cli {
                 }
                 Some(&mut args.quality)
             }
+            Command::Reference(args) => {
+                args.has_camera_of_file = scene.gave("camera");
+                None
+            }
             _ => None,
         };
         if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {

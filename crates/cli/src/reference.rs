@@ -43,7 +43,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     )?;
     let eye_m = camera::eye_m(&args.camera, &scene.field)?;
     let is_idle = eye_m.is_some() && scene.surface.specular.is_none() && !args.lights.is_empty();
-    if is_idle && !args.global.quiet {
+    if is_idle && !args.has_camera_of_file && !args.global.quiet {
         setup::note("--camera changes nothing without --specular");
     }
     let plan = |limits: &Limits| {

@@ -61,6 +61,9 @@ pub struct ReferenceArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub camera: EyeArgs,
+    /// Whether the camera is that of a scene file, which has no notes on keys without effect.
+    #[arg(skip)]
+    pub has_camera_of_file: bool,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

@@ -137,6 +137,13 @@ fn gpu_reference_views_specular_from_a_camera() {
     let run = folder.run_str("reference field.npy -o noted.exr --spp 1 --sun 90,35 --camera");
     let said = "note: --camera changes nothing without --specular\n";
     assert!(run.status == Some(0) && run.err.contains(said), "{}", run.err);
+    // The camera of a scene file is that of the flags. Such a file gives no notes on keys without effect.
+    let scene = r#"{ "camera": { "from": { "azimuth_deg": 270, "elevation_deg": 35, "distance_m": 10 }, "look_at_m": [4, 4, 2] } }"#;
+    folder.write("scene.json", scene.as_bytes());
+    assert_eq!(light("of_file", "--specular 200,0.5 --scene scene.json").0, viewed);
+    let run =
+        folder.run_str("reference field.npy -o quiet.exr --spp 1 --sun 90,35 --scene scene.json");
+    assert!(run.status == Some(0) && !run.err.contains("changes nothing"), "{}", run.err);
     // The default sun stands before the camera, as in `render`.
     let camera = "--camera 0,30 --size 9x7 --quiet";
     done(&folder, &format!("reference field.npy -o a.exr --spp 1 {camera}"));
