@@ -15,8 +15,8 @@ use glam::Vec3Swizzles as _;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, Lights, Method, Precision, Quality, Scene,
-    Specular, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, KeyLight, Lights, Method, Precision,
+    Quality, Scene, Specular, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -219,6 +219,11 @@ impl Wanted {
         let bound = rms(bounds.iter().map(|bound| bound / scale));
         within(what, "the CPU reference", rms(off.into_iter()), bound, quality)
     }
+}
+
+/// Whether a part of a key light is above horizontal ground. The plan drops others, and refuses a scene that has only those.
+fn is_above_ground(key: &KeyLight, border: Border) -> bool {
+    border == Border::Open || key.elevations_rad[1] > 0.0
 }
 
 /// R, G, B of a picture at some places; a grey one has one channel.

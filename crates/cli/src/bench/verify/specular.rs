@@ -25,7 +25,7 @@ use ridgelight_cpu::tolerance::{
 };
 
 use super::harmonics::{Place, with_nodes};
-use super::{Device, Wanted, bounds, colours, rms, sentence, within};
+use super::{Device, Wanted, bounds, colours, is_above_ground, rms, sentence, within};
 
 /// The lobe where the plan reflects sky and environment by its slices.
 fn by_slices(scene: &Scene, plan: &Plan) -> Option<PhongSpecular> {
@@ -56,7 +56,8 @@ pub(super) fn check(
     if scene.surface.specular.as_ref().is_none_or(|specular| specular.largest().scale <= 0.0) {
         return Ok("the specular scale is 0 everywhere".to_owned());
     }
-    let (scene, all) = (half(scene), scene.lights.lit());
+    let (scene, mut all) = (half(scene), scene.lights.lit());
+    all.keys.retain(|key| is_above_ground(key, scene.surface.border));
     let under = |lights: Lights| Scene { lights, ..scene.clone() };
     let suns = Lights { suns: all.suns.clone(), ..Lights::default() };
     let sunlit = Lights { sky: all.sky, environment: all.environment.clone(), ..suns.clone() };

@@ -20,7 +20,7 @@ use ridgelight_cpu::sky_shade::sky_at;
 use ridgelight_cpu::sun_shade::{sun_at, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 
-use super::{Device, Wanted, colours, environments, sentence};
+use super::{Device, Wanted, colours, environments, is_above_ground, sentence};
 
 /// A sky of radiance 1 and the scene's suns and key lights on white ground, at some texels. None
 /// where the CPU reference does not [follow](followed) the sweeps.
@@ -147,7 +147,7 @@ pub(super) struct AimedLayers {
 }
 
 impl AimedLayers {
-    /// Draws the suns and key lights of a scene; none where all are dark.
+    /// Draws the suns and key lights of a scene; none where all are dark or below the ground.
     pub(super) fn of(scene: &Scene, device: &mut Device) -> Result<Option<Self>> {
         let Some(scene) = aimed_alone(scene) else { return Ok(None) };
         let (plan, layers) = device.layers(&scene, true)?;
@@ -193,13 +193,15 @@ pub(super) fn check_aimed(
     Ok(Some(sentence("sun and key light", "the CPU reference", errors)))
 }
 
-/// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground; none where all are dark.
+/// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground; none where all are dark or
+/// below the ground.
 fn aimed_alone(scene: &Scene) -> Option<Scene> {
     let Lights { suns, keys, .. } = &scene.lights;
     let lit_by = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
     let suns = suns.iter().filter(|s| lit_by(&s.irradiance));
     let suns: Vec<_> = suns.map(|sun| Sun { irradiance: [1.0; 3], ..*sun }).collect();
-    let keys = keys.iter().filter(|k| lit_by(&k.radiance));
+    let border = scene.surface.border;
+    let keys = keys.iter().filter(|k| lit_by(&k.radiance) && is_above_ground(k, border));
     let keys: Vec<_> = keys.map(|key| KeyLight { radiance: [1.0; 3], ..*key }).collect();
     let is_dark = suns.is_empty() && keys.is_empty();
     (!is_dark).then(|| white(scene, Lights { suns, keys, ..Lights::default() }))
@@ -318,6 +320,28 @@ mod tests {
             ("from above", of(1.0, 0.41).light()),
         ];
         of(1.0, 0.4).refuses(&quality, [0.01, 0.9], &wrong);
+    }
+
+    /// A key light that reaches up to the horizontal lights an open field alone. Elsewhere the plan refuses a frame of that light, so
+    /// none is drawn.
+    #[test]
+    fn key_lights_below_the_ground_are_not_drawn() {
+        let key = |high| KeyLight {
+            azimuth_rad: 1.0,
+            width_rad: 0.5,
+            elevations_rad: [-0.5, high],
+            radiance: [2.0; 3],
+        };
+        for border in [Border::Plane, Border::Open, Border::Periodic] {
+            for (high, is_lit) in [(0.0, border == Border::Open), (0.1, true)] {
+                let mut scene = scene(48, Lights { keys: vec![key(high)], ..Lights::default() });
+                scene.surface.border = border;
+                let limits = Limits::lavapipe();
+                let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+                assert_eq!(plan.is_ok(), is_lit, "{border:?} {high}");
+                assert_eq!(aimed_alone(&scene).is_some(), is_lit, "{border:?} {high}");
+            }
+        }
     }
 
     /// A sun between two axes has a batch of azimuths along each: all are checked. A light of another number is none of them.

@@ -17,8 +17,8 @@ use super::super::sweeps::{AimedLayers, Shaded, azimuths_of, check_aimed, follow
 use super::super::{Device, Wanted, bounds, colours, refused, rms, sentence, within};
 use super::{GREY, VIEW_ERROR, normal_error};
 
-/// Specular and diffuse light of a [`half`](super::half) scene's key lights, which are its only lights; `None` where none of them is
-/// above the ground.
+/// Specular and diffuse light of a [`half`](super::half) scene's key lights, which are its only lights and above the ground; `None`
+/// without a layer of specular.
 pub(super) fn check(
     scene: &Scene,
     (places, dark): (&[usize], f64),
