@@ -293,6 +293,21 @@ mod tests {
         assert_eq!(first, 36);
     }
 
+    /// East of a grid point at height 0 the first column is at -0 and all others are at 0: of equal slopes the first that is visited
+    /// stays, and the piece that comes first holds another.
+    #[test]
+    fn equal_slopes_of_either_sign_have_the_same_bits() {
+        let heights: Vec<f64> = (0..12).map(|i| if i == 1 { -1e-60 } else { 0.0 }).collect();
+        let field = HeightField::new(1, 12, &heights, [1.0; 2], None).unwrap();
+        assert!(field.heights_m()[1].is_sign_negative());
+        let oracle = Oracle::new(&field, Border::Open);
+        let maxima = Maxima::of(&oracle);
+        for mut first in [0, 4, 8] {
+            let found = maxima.elevation_rad(&oracle, [0, 0], 0.0, &mut first);
+            assert_eq!(found.to_bits(), oracle.elevation_rad(0, 0, 0.0).to_bits(), "{first}");
+        }
+    }
+
     /// Each block is the maximum of the rows and columns that [`Level`] states.
     #[test]
     fn blocks_hold_their_highest_grid_points() {

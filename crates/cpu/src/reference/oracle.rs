@@ -351,9 +351,10 @@ pub fn elevation_of(border: Border, horizon: Option<Horizon>) -> f64 {
     elevation_of_slope(border, horizon.map_or(f64::NEG_INFINITY, |h| h.slope))
 }
 
-/// The same of a slope, -∞ where nothing is hit: its arc tangent is -π/2.
+/// The same of a slope, -∞ where nothing is hit: its arc tangent is -π/2. A slope of -0, which is equal to 0, gives 0: of the two
+/// the first crossing would decide.
 pub(super) fn elevation_of_slope(border: Border, slope: f64) -> f64 {
-    let met = slope.atan();
+    let met = slope.atan() + 0.0;
     match border {
         Border::Open => met,
         Border::Plane | Border::Periodic => met.max(0.0),
