@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
 use ridgelight::scene::{Fuse, KeyLight, Lights, Lines, Method, Quality, Scene};
+use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_trade::error::HorizonError;
 
@@ -169,6 +169,13 @@ impl Exact {
         frame: &Frame,
     ) -> Result<Errors> {
         let found = gpu.pixels(frame, 0)?;
+        // Errors leave out pairs with NaN, and these fields have no voids.
+        if let Some(i) = found.values.iter().position(|v| v.is_nan()) {
+            return Err(Error::Device {
+                doing: "comparing with exact results".into(),
+                reason: format!("value {i} of {} is NaN, expected numbers", found.name),
+            });
+        }
         let elevations = match self {
             Self::Light(exact) => return Ok([error(&colours(&found), exact)?, 0.0]),
             Self::Horizons(elevations) => elevations,
