@@ -14,7 +14,7 @@ use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_resolved};
 
 use super::super::aimed::{self, Horizons, Judged, allowed_by, horizons};
 use super::super::sweeps::{AimedLayers, Shaded, azimuths_of, check_aimed, followed, lit};
-use super::super::{Device, Wanted, bounds, colours, refused, rms, sentence, within};
+use super::super::{Device, Wanted, bounds, colours, percent, refused, rms, sentence, within};
 use super::{GREY, VIEW_ERROR, normal_error};
 
 /// Specular and diffuse light of a [`half`](super::half) scene's key lights, which are its only lights and above the ground; `None`
@@ -164,8 +164,15 @@ fn judge_all(
     }
     let errors = found.iter().zip(all).map(|(found, place)| *found - place.light);
     let error = rms(errors.flat_map(values)) / light;
-    let errors =
-        within("specular of key lights", "the oracle", error, bound_of(all, of_sky), quality)?;
+    let bound = bound_of(all, of_sky);
+    let errors = within("specular of key lights", "the oracle", error, bound, quality)?;
+    // Black has an error of 1.
+    if bound >= 1.0 {
+        let error = percent(error);
+        return Ok(Some(format!(
+            "key specular at all places is not judged, as too few of them are bright: error {error} against the oracle"
+        )));
+    }
     Ok(Some(sentence("key specular at all places", "the oracle", errors)))
 }
 
@@ -342,6 +349,14 @@ mod tests {
             let error = judged(scaled(wrong)).unwrap_err().to_string();
             assert!(error.contains("specular of key lights has an error"), "{error}");
         }
+        // Of a single bright place nothing is known: it may be at a shadow's edge.
+        let range = [DVec3::ZERO, DVec3::ONE];
+        let single = Reflected { light: DVec3::ONE, range, ..Reflected::default() };
+        let text = judge_all(&[DVec3::ZERO], &[single], 0.1, &quality).unwrap().expect("lit");
+        assert!(
+            text.ends_with("too few of them are bright: error 100.000 % against the oracle"),
+            "{text}"
+        );
         let dark = vec![Reflected::default(); 3];
         assert!(judge_all(&[DVec3::ZERO; 3], &dark, 0.1, &quality).unwrap().is_none());
     }
