@@ -35,9 +35,11 @@ pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Resul
         if !is_same(name, found, expected) {
             let expected = match name.as_str() {
                 "bounces" => format!("{} (--bounces here)", expected.unwrap_or("0")),
-                "eye_m" => "none: `trade` views specular from straight above; trace the file again \
+                "eye_m" => {
+                    "none: `trade` views specular from straight above; trace the file again \
                             without --camera"
-                    .to_owned(),
+                        .to_owned()
+                }
                 name if gives_none(name) => format!("none: {NO_SETTINGS}"),
                 _ => format!("{} (in this scene)", expected.unwrap_or("none")),
             };
