@@ -124,7 +124,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// Around a texel, slices are at most half a standard deviation of the lobe wide. Wrong light is refused: sharper, duller, of a light moved
-    /// by a fifth of a cell or a tenth wider.
+    /// by a fifth of a cell or a tenth wider. Sharper specular than that of exponent 20 reaches too few of these places.
     #[test]
     fn wrong_specular_of_sphere_lights_is_refused() {
         let quality = Quality { sun_azimuths: 8, ..Quality::default() };
@@ -148,7 +148,7 @@ mod tests {
             assert!(f64::from(around) >= half_deviations, "{around} of {half_deviations}");
             wanted(&scene, &slices, &places())
         };
-        for exponent in [5.0, 20.0, 100.0] {
+        for exponent in [1.0, 5.0, 20.0] {
             let right = of(0.0, 1.0, exponent);
             let wrong = [
                 ("sharper", of(0.0, 1.0, 1.5 * exponent).specular.light()),
