@@ -44,7 +44,8 @@ pub struct Picture {
     /// ([`Plan::edit_passes`]), but not with an environment in spherical harmonics or with sphere lights. Memory: a quarter
     /// of a byte per texel.
     pub keeps_horizons: bool,
-    /// The heights will not change: the planner may drop what they do not need.
+    /// The heights will not change: the planner may drop what they do not need, and there are no passes for edits. It drops
+    /// nothing for [unknown](crate::scene::HeightField::unknown) heights.
     pub still: bool,
     /// Only the texel's own ground occludes light, and there are no bounces. Sphere lights keep their shadows.
     pub unshadowed: bool,

@@ -37,7 +37,7 @@ const MOST_BOUNCES: u32 = 64;
 /// between them. It does not include unsampled light: see [`unsampled_light_error`].
 ///
 /// # Errors
-/// Bounces, eye, surface or lights out of range; no light; a scene beyond the limits.
+/// Bounces, eye, surface or lights out of range; no light; a field of unknown heights; a scene beyond the limits.
 pub fn reference(
     scene: &Scene,
     bounces: u32,
@@ -122,6 +122,7 @@ fn traced(
     let Scene { field, surface, lights } = scene;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
+    field.check_known("field of a reference", "heights: paths end above the highest")?;
     if bounces > MOST_BOUNCES {
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("bounces", bounces.to_string(), expected));

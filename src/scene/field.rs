@@ -109,8 +109,10 @@ impl HeightField {
     /// A field whose heights only the device knows. The plan assumes level ground at height 0, so the image that the caller
     /// hands in holds the heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
     ///
-    /// The following need heights and return an error: precision `packed`, [`plan::reference`](crate::plan::reference),
-    /// [`plan::visible_points`](crate::plan::visible_points()) and [`plan::scatter`](crate::plan::scatter()).
+    /// The following need heights and return an error: precision `packed`; [`plan::reference`](crate::plan::reference()),
+    /// in bands or at some texels too; [`plan::visible_points`](crate::plan::visible_points()),
+    /// [`plan::facet_mask`](crate::plan::facet_mask()), [`plan::ellipses`](crate::plan::ellipses()), also on curved bases, and
+    /// [`plan::scatter`](crate::plan::scatter()). [`Picture::still`](crate::plan::Picture::still) omits no sweep.
     /// [`light_cutoff`](super::Quality::light_cutoff) limits sphere lights to where they would light level ground; 0 removes
     /// the limit.
     ///
@@ -126,9 +128,12 @@ impl HeightField {
         Ok(Self { rows, cols, heights_m: vec![0.0; count], is_unknown: true, ..corner })
     }
 
-    /// Whether only the device knows the heights: [`unknown`](Self::unknown).
-    pub(crate) fn is_unknown(&self) -> bool {
-        self.is_unknown
+    /// Refuses heights that only the device knows ([`unknown`](Self::unknown)) for `name`, which needs `expected`.
+    pub(crate) fn check_known(&self, name: &str, expected: &str) -> Result<()> {
+        if self.is_unknown {
+            return Err(Error::setting(name, "unknown heights", expected));
+        }
+        Ok(())
     }
 
     /// Number of rows (south to north extent).
@@ -203,11 +208,14 @@ impl HeightField {
 
     /// Whether no edge between two triangles of the surface is a valley. Then no point of the field rises above the plane
     /// of any triangle, and the horizon of a grid point along an azimuth is the slope of its triangle. A `periodic` field is
-    /// concave only where it is level.
+    /// concave only where it is level. Unknown heights may have valleys.
     ///
     /// An edge and the two vertices across it form a parallelogram on the map. The edge is not a valley if the sum of its
     /// ends is at least the sum of those two, whatever the cell size.
     pub(crate) fn is_concave(&self, border: Border) -> bool {
+        if self.is_unknown {
+            return false;
+        }
         let (rows, cols) = (self.rows, self.cols);
         let h = |r: usize, c: usize| f64::from(self.heights_m[r * cols + c]);
         if border == Border::Periodic {

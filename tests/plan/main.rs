@@ -7,6 +7,7 @@ mod reference;
 mod shadows;
 mod sizes;
 mod specular;
+mod unknown;
 mod walks;
 
 use std::collections::HashSet;

@@ -332,6 +332,9 @@ impl Sweep {
             (true, _) => 1,
         };
         let packed = quality.precision == Precision::Packed;
+        if packed {
+            field.check_known("`precision packed`", "heights: their largest sets the scale")?;
+        }
         let periodic = border == Border::Periodic;
         limits.sweep.check("limits.sweep")?;
         limits.untuned_sweep.check("limits.untuned_sweep")?;

@@ -73,10 +73,7 @@ pub fn visible_points(
 /// # Errors
 /// Unknown heights, as rays end above the highest; a side whose numbers could equal a mark.
 pub(super) fn check_field(field: &HeightField) -> Result<()> {
-    if field.is_unknown() {
-        let expected = "heights: rays end above the highest";
-        return Err(Error::setting("field of visible points", "unknown heights", expected));
-    }
+    field.check_known("field of visible points", "heights: rays end above the highest")?;
     let longest = field.rows().max(field.cols());
     if longest <= VisiblePoints::LARGEST_SIDE {
         return Ok(());
