@@ -44,6 +44,9 @@
 //! | specular ([`Specular::unknown`]) | RGBA32F | 0 | the same | 1 |
 //! | colours of sphere lights; directions, positions and sizes of lights | no | | no | |
 //!
+//! Formats narrower than 32 bits are accepted where the device can sample them. A
+//! [`plan::reference`](crate::plan::reference()) reads only the formats of its plan, and needs known heights.
+//!
 //! Shaders fetch from an [`ImageArg`] directly. Rows of texels in a buffer ([`BufferArg`]) are accepted where
 //! the plan allows it ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)). Each recording then begins with
 //! one vkCmdCopyBufferToImage per buffer, into an image of the renderer ([`Renderer::taken`]); an

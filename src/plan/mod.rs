@@ -123,6 +123,11 @@ impl Plan {
         self.passes.iter().chain(&self.edit_passes)
     }
 
+    /// Whether it traces the paths of a [`reference`](reference()), which reads only the formats of the plan.
+    pub(crate) fn is_traced(&self) -> bool {
+        self.find("batch_mean").is_some()
+    }
+
     /// The resource of this name.
     pub fn find(&self, name: &str) -> Option<ResourceId> {
         self.resources.iter().position(|r| r.name == name).map(ResourceId)
@@ -154,7 +159,7 @@ impl Plan {
     /// [`reference`](crate::plan::reference()) accepts only its own formats.
     pub fn take_buffer(&mut self, input: &str, texels: Format) -> Result<()> {
         let names: Vec<_> = self.inputs().map(|(_, r)| r.name.clone()).collect();
-        let is_traced = self.find("environment_cdf").is_some() || self.find("batch_mean").is_some();
+        let is_traced = self.is_traced();
         let found = self
             .resources
             .iter_mut()

@@ -87,11 +87,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Formats that the caller's image may have. Quantities that a [`plan::reference`](crate::plan::reference)
-    /// derives, such as how densely it samples an environment, need f32.
+    /// Formats that the caller's image may have. A [`plan::reference`](crate::plan::reference()) accepts the plan's only: other
+    /// results are compared with it, and what it derives, such as how densely it samples an environment, needs f32.
     fn formats(&self, resource: &Resource) -> Vec<vk::Format> {
         let Kind::Image { format, .. } = resource.kind else { return Vec::new() };
-        let may_differ = resource.may_be_narrow() && self.plan.find("environment_cdf").is_none();
+        let may_differ = resource.may_be_narrow() && !self.plan.is_traced();
         let all = format.vk_read().iter().copied();
         all.filter(|f| *f == format.vk() || may_differ && self.readable.contains(f)).collect()
     }

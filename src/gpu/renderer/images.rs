@@ -43,7 +43,8 @@ pub struct ImageArg {
     /// A view of its colour aspect: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,
     /// Its format: the plan's. An input of heights, an environment, an albedo or light colours may have another
-    /// of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample.
+    /// of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample, except in a
+    /// [`plan::reference`](crate::plan::reference()).
     pub format: vk::Format,
     /// Columns, rows and layers; must match the plan.
     pub extent: [u32; 3],

@@ -10,7 +10,7 @@ use ridgelight::gpu::{
     Renderer,
 };
 use ridgelight::plan::{self, Picture, Plan};
-use ridgelight::scene::{Albedo, Border, Environment, HeightField, Quality, Scene, Sun};
+use ridgelight::scene::{Albedo, Border, Environment, HeightField, Normals, Quality, Scene, Sun};
 use ridgelight::{Error, Result};
 
 use crate::intercepted::with_function;
@@ -109,6 +109,37 @@ fn inputs_in_an_engines_formats_are_lit_as_f32_are() {
     println!("{drawn:?}");
     assert!(drawn.len() >= 2 + 4 + 4, "{drawn:?}");
     gpu.end(frame);
+}
+
+/// A path-traced reference accepts only the formats of its plan, with an environment and without.
+#[test]
+fn a_reference_refuses_narrower_inputs() {
+    let mut device = Device::new();
+    let around = scene();
+    let mut without = around.clone();
+    without.lights.environment = None;
+    let limits = device.limits();
+    let gpu = device.gpu.as_mut().expect("alive");
+    for scene in [around, without] {
+        let plan = plan::reference(&scene, 0, Normals::Smooth, None, 1, &limits).expect("a plan");
+        let inputs: Vec<_> = plan.inputs().map(|(_, r)| (r.name.clone(), r.format())).collect();
+        let contents = plan::reference_inputs(&scene);
+        let texels: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let mut frame = gpu.frame(plan, &texels).expect("a frame");
+        let (own, outputs) = (frame.inputs(), frame.outputs());
+        for (which, (name, format)) in inputs.iter().enumerate() {
+            for &narrow in &format.expect("an image").vk_read()[1..] {
+                let mut given = own.clone();
+                given[which].format = narrow;
+                let recorded =
+                    gpu.run(|commands| frame.renderer().record(commands, 0, &given, &outputs));
+                let refused = recorded.expect_err("other formats").to_string();
+                assert!(refused.starts_with(&format!("{name}: format: found")), "{refused}");
+            }
+        }
+        gpu.run(|commands| frame.renderer().record(commands, 0, &own, &outputs)).expect("recorded");
+        gpu.end(frame);
+    }
 }
 
 /// A plan without their contents draws the same as one with them: heights and albedo exist only on the device.
