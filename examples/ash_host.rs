@@ -29,18 +29,19 @@ pub fn record(
         ImageArg { image, view, format, extent, before, after }
     };
     let inputs = [arg(heights, FILLED, FILLED)];
-    let outputs = [arg(light, NEW, COPIED)];
+    let outputs = [arg(light, REUSED, COPIED)];
     renderer.record(commands, frame_in_flight, &inputs, &outputs)
 }
 
-/// The states of the images before the recording, and of the light after it.
+/// The states of the images before the recording, and of the light after it. An earlier frame's copy may still read the
+/// light: its state before names that copy, and drops the contents.
 const FILLED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COPY,
     access: vk::AccessFlags2::TRANSFER_WRITE,
     layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
 };
-const NEW: ImageState = ImageState {
-    stage: vk::PipelineStageFlags2::NONE,
+const REUSED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::COPY,
     access: vk::AccessFlags2::NONE,
     layout: vk::ImageLayout::UNDEFINED,
 };
