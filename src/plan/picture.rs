@@ -41,8 +41,8 @@ pub struct Picture {
     /// only the suns' lattices, as the harmonics keep the visibility.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat, then also accept edits
-    /// ([`Plan::edit_passes`]), but not with an environment in spherical harmonics or with sphere lights. Memory: a quarter
-    /// of a byte per texel.
+    /// ([`Plan::edit_passes`]), but not with spherical harmonics, bounces, specular, sphere lights or
+    /// [`still`](Self::still). Memory: a quarter of a byte per texel.
     pub keeps_horizons: bool,
     /// The heights will not change: the planner may drop what they do not need, and there are no passes for edits. It drops
     /// nothing for [unknown](crate::scene::HeightField::unknown) heights.

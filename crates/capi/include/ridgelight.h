@@ -517,7 +517,7 @@ enum RidgelightResult ridgelight_check_version(uint32_t header);
 // `requirements` is null or points to a struct whose struct_size is set.
 enum RidgelightResult ridgelight_requirements(struct RidgelightRequirements *requirements);
 
-// Whether a device is suitable; before it is made, so `device` is ignored.
+// Whether a physical device is suitable. Call it before the VkDevice exists.
 //
 // Returns OK; DEVICE where it lacks something, which ridgelight_last_error names; ARGUMENT.
 //

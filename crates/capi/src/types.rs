@@ -105,7 +105,7 @@ pub unsafe extern "C" fn ridgelight_requirements(
     })
 }
 
-/// Whether a device is suitable; before it is made, so `device` is ignored.
+/// Whether a physical device is suitable. Call it before the VkDevice exists.
 ///
 /// Returns OK; DEVICE where it lacks something, which ridgelight_last_error names; ARGUMENT.
 ///
