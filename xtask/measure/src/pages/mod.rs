@@ -104,7 +104,7 @@ fn hosts() -> Result<String> {
     }
     Ok(out
         + &format!(
-            "\nNo host needs to enable a device feature or an extension. \"Crates added\" counts Ridgelight and those of its dependencies that the host's API crate or engine does not already compile. For `ash` it counts all of them, `ash` included. C and C++ link the finished library and compile no crate. {about}\n\n*{}*\n",
+            "\nNo host needs to enable a device feature or an extension. \"Crates added\" counts Ridgelight and those of its dependencies that the host's API crate or engine does not already compile. For `ash` it counts all of them, `ash` included; so does the number of crates at the top of this page, at its own commit. C and C++ link the finished library and compile no crate. {about}\n\n*{}*\n",
             made.trim_start_matches("; ")
         )
         + "\nTests run all but the last and compare their bytes with the command line's, without a validation message \
