@@ -10,7 +10,7 @@ use super::figures::{RESULTS, cells, fill, result, wrong};
 /// after a text; `{trade TEXT}` the error of the line with these settings.
 const MODES: [&str; 17] = [
     "horizons: `--lines exact` | exact | accuracy_mt_washington_256 | worst horizon {exact@6}°",
-    "horizons: `--method brute-force` | exact | accuracy_mt_washington_256 | worst horizon {brute@6}°",
+    "horizons: `--method brute-force` | exact but for rounding | accuracy_mt_washington_256 | worst horizon {brute@6}°",
     "horizons: sweep, the default | approximate, never too high | accuracy_N44W072 | horizons {1;aimed-nearest@2}° mean, \
      {1;aimed-nearest@5}° at 99.9 %; sky light {1;aimed-nearest@7} %",
     "horizons: `--method pyramid` | approximate | pyramids_mt_washington_256 | horizons {4;2;stack@4}° mean; sky light \
@@ -23,12 +23,12 @@ const MODES: [&str; 17] = [
     "key light, 3 slices | exact but for its slices | shadow_edge | {after 3 slices } of the unshadowed light",
     "sphere light, 8 slices | exact but for its slices | lights | at most {max@4} %",
     "sphere light by SH, order 4 | approximate | lights_cones | {;surface;across;32@6} %",
-    "3 bounces, `sweep` | approximate | bounce | {Mt Rainier;sky;0.8;3;sweep, picked@5} % of the indirect light (reference \
-     noise {Mt Rainier;sky;0.8;3;sweep, picked@6} %), {Mt Rainier;sky;0.8;3;sweep, picked@7} % of all light",
-    "3 bounces, `brute-force` | approximate | bounce | {Mt Rainier;sky;0.8;3;brute-force@5} % of the indirect light (reference \
-     noise {Mt Rainier;sky;0.8;3;brute-force@6} %), {Mt Rainier;sky;0.8;3;brute-force@7} % of all light",
-    "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (reference \
-     noise {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
+    "3 bounces, `sweep` | approximate | bounce | {Mt Rainier;sky;0.8;3;sweep, picked@5} % of the indirect light (noise \
+     {Mt Rainier;sky;0.8;3;sweep, picked@6} %), {Mt Rainier;sky;0.8;3;sweep, picked@7} % of all light",
+    "3 bounces, `brute-force` | approximate | bounce | {Mt Rainier;sky;0.8;3;brute-force@5} % of the indirect light (noise \
+     {Mt Rainier;sky;0.8;3;brute-force@6} %), {Mt Rainier;sky;0.8;3;brute-force@7} % of all light",
+    "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (noise \
+     {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
     "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;64;slices@4}, {20;64;slices@4}, {1000;64;slices@4} %",
     "indirect Phong specular, exponent 1, 5, 20 | approximate | gloss | {0;0.9;1;vector;4@5}, {0;0.9;5;vector;4@5}, \
      {0;0.9;20;vector;4@5} %",
