@@ -20,7 +20,7 @@ pub use bounce::{
     BounceError, CastError, Gathered, Land, Slices, block_error, march_error, place_error,
     walk_error,
 };
-pub use light::{ShadeError, SphereGeometry};
+pub use light::{ShadeError, SphereGeometry, shadow_ground, shadow_stored};
 pub use points::{
     MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,
     gathered, visible_elevation,

@@ -12,6 +12,21 @@ use ridgelight::basis::slice::{Slices, slice_index};
 use ridgelight::scene::{HeightField, SphereLight, Wedges};
 use std::f64::consts::PI;
 
+/// Error of the raised ground of `shadow_sweep` over a plane, on a field whose largest |height| is `largest_m`. `plane_m` is the
+/// plane's height at the end of a line.
+///
+/// Heights over the plane are sums of two terms and are raised by four: 10 ε of the largest.
+pub fn shadow_ground(largest_m: f64, plane_m: f64) -> f64 {
+    10.0 * EPSILON * (largest_m + plane_m.abs())
+}
+
+/// Error of a stored height of `shadow_sweep`, whose ground has an error of `ground`.
+///
+/// The shader adds 1e-6, which is 17 ε, of the sizes of its terms, so that a shadow is never too low. A half of an f32 has 7 bits.
+pub fn shadow_stored(height_m: f64, ground: f64) -> f64 {
+    height_m.abs() / 128.0 + 5.0 * ground
+}
+
 /// Errors of a grid point's light through its horizons.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadeError {

@@ -10,7 +10,7 @@ use ridgelight_cpu::shadow_shade::sees_all;
 use ridgelight_cpu::shadow_sweep::{height_of, lines_of, shadow_line};
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::sun_shade::weights;
-use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_march_slope};
+use ridgelight_cpu::tolerance::{ShadeError, device_march_slope, shadow_ground, shadow_stored};
 
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 
@@ -35,8 +35,7 @@ impl Words {
     }
 }
 
-/// Heights over the plane are sums of two terms and are raised by four: 10 ε of the largest, of which the shader adds 17. A half
-/// of an f32 has 7 bits. A shadow is never too low.
+/// Heights of shadows, and the steps whose ground casts them. A shadow is never too low.
 pub(crate) fn shadow_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let words = Words::of(run, pass);
     let [largest, _] = run.relief();
@@ -47,7 +46,7 @@ pub(crate) fn shadow_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let warm_up = run.warm_up(azimuth.marches_rows());
         let total = warm_up + march.steps;
         let plane = f64::from(azimuth.low_slope) * f64::from(azimuth.step_m) * f64::from(total);
-        let rounded = 10.0 * EPSILON * (largest + plane.abs());
+        let rounded = shadow_ground(largest, plane);
         let (lines, first) = lines_of(&march, total);
         for line in 0..lines {
             let steps = shadow_line(&march, first + line * CELL, (total, warm_up));
@@ -62,7 +61,7 @@ pub(crate) fn shadow_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                     continue;
                 };
                 let want = top - at_step.over_plane;
-                let tolerance = want.abs() / 128.0 + 5.0 * rounded;
+                let tolerance = shadow_stored(want, rounded);
                 pairs.push(Pair { got, want, tolerance, at });
                 pairs.push(Pair { got: (want - got).max(0.0), want: 0.0, tolerance: 0.0, at });
                 let cast = steps[step - back].expect("on the line").raised;
