@@ -90,9 +90,10 @@ impl Curvature {
     /// Checks the curvature for a field and returns the estimated occlusion change.
     ///
     /// # Errors
-    /// A value that is not finite; heights too near the centre of a hollow's curvature; a base that turns by more than half
-    /// a circle across a field that does not repeat; [`occlusion_change`](Self::occlusion_change) above
-    /// [`MAX_CHANGE`](Self::MAX_CHANGE): the message states the curvature that reaches it.
+    /// A value that is not finite; [unknown](HeightField::unknown) heights; heights too near the centre of a hollow's
+    /// curvature; a base that turns by more than half a circle across a field that does not repeat;
+    /// [`occlusion_change`](Self::occlusion_change) above [`MAX_CHANGE`](Self::MAX_CHANGE): the message states the curvature
+    /// that reaches it.
     pub fn check(&self, field: &HeightField, border: Border) -> Result<OcclusionChange> {
         const NAME: &str = "curvature of the base";
         let shown = |of: &Self| {
@@ -104,6 +105,7 @@ impl Curvature {
         if *self == Self::FLAT {
             return Ok(OcclusionChange::default());
         }
+        field.check_known(NAME, "heights: they decide how much occlusion changes")?;
         let heights = field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(l, h), z| (l.min(z), h.max(z)));
         for k in self.per_m {

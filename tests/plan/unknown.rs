@@ -2,7 +2,7 @@
 
 use ridgelight::Result;
 use ridgelight::plan::{self, Limits, Picture, Plan};
-use ridgelight::scene::{Border, Directions, HeightField, Normals, Precision, Quality};
+use ridgelight::scene::{Border, Curvature, Directions, HeightField, Normals, Precision, Quality};
 
 use super::{flat, under_sky};
 
@@ -43,6 +43,15 @@ fn plans_that_need_heights_refuse_unknown_ones() {
         let refused = plan(unknown()).unwrap_err().to_string();
         assert!(refused.contains("found unknown heights, expected heights:"), "{name}: {refused}");
     }
+}
+
+/// A curved base changes occlusion by an amount that depends on the heights; a flat one changes nothing.
+#[test]
+fn a_curved_base_refuses_unknown_heights() {
+    let curved = Curvature { per_m: [1e-3, 0.0] };
+    let refused = curved.check(&unknown(), Border::Plane).unwrap_err().to_string();
+    assert!(refused.contains("found unknown heights, expected heights:"), "{refused}");
+    assert!(Curvature::FLAT.check(&unknown(), Border::Plane).is_ok());
 }
 
 /// Level ground that stays level needs no sweep. Unknown heights may have valleys.

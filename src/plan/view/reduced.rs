@@ -1,6 +1,7 @@
 use crate::scene::HeightField;
 
-/// Largest height error of a mesh with a vertex at every `step`th grid point, metres.
+/// Largest height error of a mesh with a vertex at every `step`th grid point, metres; 0 for
+/// [unknown](HeightField::unknown) heights.
 ///
 /// Both surfaces are linear between crossings of their edges, so the largest error is at a crossing. Edges of the reduced
 /// mesh lie on the field's own, except for the diagonals of cells that the last row or column cuts short: these are
