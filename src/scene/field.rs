@@ -109,10 +109,11 @@ impl HeightField {
     /// A field whose heights only the device knows. The plan assumes level ground at height 0, so the image that the caller
     /// hands in holds the heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
     ///
-    /// The following need heights and return an error: precision `packed`; [`plan::reference`](crate::plan::reference()),
+    /// The following need heights and return an error: a sweep with precision `packed`; [`plan::reference`](crate::plan::reference()),
     /// in bands or at some texels too; [`plan::visible_points`](crate::plan::visible_points()),
     /// [`plan::facet_mask`](crate::plan::facet_mask()), [`plan::ellipses`](crate::plan::ellipses()), also on curved bases, and
-    /// [`plan::scatter`](crate::plan::scatter()). [`Picture::still`](crate::plan::Picture::still) omits no sweep.
+    /// [`plan::scatter`](crate::plan::scatter()); [`Curvature::check`](super::Curvature::check) of a base that is not flat;
+    /// [`finer`](Self::finer). [`Picture::still`](crate::plan::Picture::still) omits no sweep.
     /// [`light_cutoff`](super::Quality::light_cutoff) limits sphere lights to where they would light level ground; 0 removes
     /// the limit.
     ///

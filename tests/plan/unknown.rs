@@ -54,6 +54,14 @@ fn a_curved_base_refuses_unknown_heights() {
     assert!(Curvature::FLAT.check(&unknown(), Border::Plane).is_ok());
 }
 
+/// A finer field would count as known, and its heights as 0.
+#[test]
+fn unknown_heights_are_not_refined() {
+    let refused = unknown().finer(Border::Plane, 2).map(|_| ()).unwrap_err().to_string();
+    assert!(refused.contains("found unknown heights, expected heights:"), "{refused}");
+    assert!(flat(9, 14).finer(Border::Plane, 2).is_ok());
+}
+
 /// Level ground that stays level needs no sweep. Unknown heights may have valleys.
 #[test]
 fn unknown_heights_keep_their_sweep() {

@@ -46,11 +46,12 @@ impl HeightField {
     /// are f32. The result has no voids: filled heights are ground.
     ///
     /// # Errors
-    /// A cell size below its range.
+    /// [Unknown](Self::unknown) heights; a cell size below its range.
     ///
     /// # Panics
     /// 0 times.
     pub fn finer(&self, border: Border, times: usize) -> Result<Self> {
+        self.check_known("finer field", "heights: the new ones are linear between them")?;
         let finer = Finer::new(self, border, times);
         let heights = finer.each(|i| self.base_m() + f64::from(self.heights_m()[i]));
         let cell_m = self.cell_m().map(|c| c / times as f64);
