@@ -56,7 +56,8 @@ impl<'a> Measuring<'a> {
         let mut found = Self { scene, probes, control, own, all: Vec::new() };
         if own.error > GOOD {
             found.probes = Probes::of(&Lit::of(scene), MORE_PROBES, TRUE_SEED, &unsure)?;
-            let exact = if scene.lights.suns.is_empty() {
+            // Azimuths of suns and key lights are no grid vectors.
+            let exact = if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
                 Quality { lines: Lines::Exact, azimuths: 512, ..dense }
             } else {
                 Quality { method: Method::BruteForce, azimuths: 128, sun_azimuths: 64, ..dense }
