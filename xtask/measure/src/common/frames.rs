@@ -170,10 +170,10 @@ pub fn new_heights_in_turn(
     Ok(times)
 }
 
-/// The light of exact horizons: every crossing in 256 azimuths, by tables of 1024 elevations.
-pub fn exact_light(gpu: &mut Headless, scene: &Scene) -> Result<Colours> {
+/// The light of exact horizons: every crossing in these azimuths, by tables of 1024 elevations.
+pub fn exact_light(gpu: &mut Headless, scene: &Scene, azimuths: u32) -> Result<Colours> {
     let method = Method::BruteForce;
-    let quality = Quality { method, azimuths: 256, table_elevations: 1024, ..Quality::default() };
+    let quality = Quality { method, azimuths, table_elevations: 1024, ..Quality::default() };
     Ok(drawn(gpu, scene, &quality, 0)?.light)
 }
 

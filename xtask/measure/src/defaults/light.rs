@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
-use ridgelight::scene::{Fuse, KeyLight, Lights, Lines, Method, Quality, Scene};
+use ridgelight::scene::{Border, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_trade::error::HorizonError;
@@ -18,8 +18,10 @@ use crate::common::terrains::Ground;
 pub const LOW_SUN: &str = "spiaggia_di_mondello_1k.hdr";
 /// Slices of a key light's exact result over those of the default.
 pub const FINER: u32 = 4;
-/// Azimuths of exact horizons: a multiple of those of every setting.
-const FINEST: u32 = 128;
+/// Azimuths of the exact result of a sky or an environment, and fewer with border `periodic`, where brute force is slowest. At
+/// least twice those of every setting compared.
+pub const FINE_AZIMUTHS: u32 = 256;
+pub const PERIODIC_AZIMUTHS: u32 = 128;
 /// Grid points whose horizons by `--lines exact` are compared with the oracle.
 pub const PICKS: usize = 256;
 /// Turns of most settings, and of those that take about ten times as long as the default or longer.
@@ -72,27 +74,41 @@ fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
     Light { name, kind: Kind::Key, lights: Lights { keys: vec![key], ..Lights::default() } }
 }
 
-/// The default, which is first, and the settings that it is compared with.
-pub fn modes(kind: Kind) -> Vec<Mode> {
+/// The default, which is first, and the settings that it is compared with. Border `plane` has all of them. The other borders leave
+/// out the settings that are only slower or much slower, and keep the more accurate fuses.
+pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };
     let slow = |flags, quality| Mode { flags, quality, turns: FEW_TURNS };
+    // A key light has slices of its own in place of azimuths.
+    let (fewer, more) = match kind {
+        Kind::Key => (
+            swept("--sun-azimuths 4", Quality { sun_azimuths: 4, ..default }),
+            swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default }),
+        ),
+        Kind::Sky | Kind::Environment | Kind::Horizons => (
+            swept("--azimuths 32", Quality { azimuths: 32, ..default }),
+            swept("--azimuths 128", Quality { azimuths: 128, ..default }),
+        ),
+    };
     let mut all = vec![
         swept("default", default),
         swept("--fuse aimed", Quality { fuse: Fuse::Aimed, ..default }),
         swept("--fuse aimed-around", Quality { fuse: Fuse::AimedAround, ..default }),
         swept("--lines 2", Quality { lines: Lines::TwoCells, ..default }),
-        swept("--lines 1/2", Quality { lines: Lines::HalfCell, ..default }),
-        slow("--method brute-force", Quality { method: Method::BruteForce, ..default }),
+        fewer,
     ];
-    // A key light has slices of its own in place of azimuths. They follow no grid vectors, so `--lines exact` refuses it.
-    if kind == Kind::Key {
-        all.push(swept("--sun-azimuths 4", Quality { sun_azimuths: 4, ..default }));
-        all.push(swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default }));
-    } else {
+    if border != Border::Plane {
+        return all;
+    }
+    all.extend([
+        swept("--lines 1/2", Quality { lines: Lines::HalfCell, ..default }),
+        more,
+        slow("--method brute-force", Quality { method: Method::BruteForce, ..default }),
+    ]);
+    // Slices of a key light follow no grid vectors, so `--lines exact` refuses it.
+    if kind != Kind::Key {
         all.push(slow("--lines exact", Quality { lines: Lines::Exact, ..default }));
-        all.push(swept("--azimuths 32", Quality { azimuths: 32, ..default }));
-        all.push(swept("--azimuths 128", Quality { azimuths: 128, ..default }));
     }
     all
 }
@@ -122,7 +138,7 @@ pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
 /// Exact results.
 pub enum Exact {
     Light(Colours),
-    /// Elevations in `FINEST` even azimuths.
+    /// Elevations in even azimuths, whose number is a multiple of that of every setting.
     Horizons(Vec<f32>),
 }
 
@@ -138,18 +154,24 @@ impl Light {
         gpu.frame(plan, &[field.heights_m()])
     }
 
-    /// By brute force. An environment's table and a key light's slices are finer than those of any setting compared, so that the
-    /// errors include those of few azimuths.
-    pub fn exact(&self, gpu: &mut Headless, scene: &Scene) -> Result<Exact> {
+    /// By brute force. Azimuths of a sky, those and the table of an environment and slices of a key light are finer than those of
+    /// `modes`, so that the errors include those of few azimuths.
+    pub fn exact(&self, gpu: &mut Headless, scene: &Scene, modes: &[Mode]) -> Result<Exact> {
         let exact = Quality { method: Method::BruteForce, ..Quality::default() };
         Ok(match self.kind {
-            Kind::Sky | Kind::Environment => Exact::Light(exact_light(gpu, scene)?),
+            Kind::Sky | Kind::Environment => {
+                let is_periodic = scene.surface.border == Border::Periodic;
+                let azimuths = if is_periodic { PERIODIC_AZIMUTHS } else { FINE_AZIMUTHS };
+                Exact::Light(exact_light(gpu, scene, azimuths)?)
+            }
             Kind::Key => {
                 let finer = Quality { sun_azimuths: FINER * exact.sun_azimuths, ..exact };
                 Exact::Light(drawn(gpu, scene, &finer, 0)?.light)
             }
             Kind::Horizons => {
-                let finest = Quality { azimuths: FINEST, ..exact };
+                let all = modes.iter().map(|mode| mode.quality.azimuths);
+                let azimuths = all.max().unwrap_or(exact.azimuths);
+                let finest = Quality { azimuths, ..exact };
                 let mut frame = self.frame(gpu, scene, &finest)?;
                 gpu.draw(&mut frame)?;
                 let elevations = gpu.pixels(&frame, 0)?.values;
@@ -187,8 +209,8 @@ impl Exact {
             let azimuths = plan::circle_rad(quality, field.cell_m())?;
             at_picks(&oracle, &azimuths, &found.values, [rows, cols])?
         } else {
-            // Azimuth k of M is azimuth k · FINEST / M of all.
-            let step = (FINEST / quality.azimuths) as usize;
+            // Azimuth k of M is azimuth k · N / M of all N.
+            let step = elevations.len() / (rows * cols) / quality.azimuths as usize;
             let own = elevations.chunks_exact(rows * cols).step_by(step);
             let own: Vec<f32> = own.flatten().copied().collect();
             HorizonError::of(&found.values, &own, rows, cols)?

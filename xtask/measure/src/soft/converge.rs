@@ -92,7 +92,7 @@ fn measured(gpu: &mut Headless, scene: &Scene) -> Result<[Panel; 2]> {
     let method = Method::BruteForce;
     let exact_sh = Quality { method, azimuths: 256, basis: Basis::Sh, ..Quality::default() };
     let exact_sh = drawn(gpu, scene, &exact_sh, 0)?.light;
-    let exact = exact_light(gpu, scene)?;
+    let exact = exact_light(gpu, scene, 256)?;
     let mut bench = Bench { gpu, scene, exact, exact_sh };
     let [cols, rows] = [scene.field.cols(), scene.field.rows()];
     println!("{cols} × {rows} grid points; relative RMSE, %; SH of order 4, plane, slices\n");

@@ -116,7 +116,7 @@ pub fn run(mut args: Args) -> Outcome {
     let (mut panels, mut reached, mut agreed) = (Vec::new(), 0, 0);
     for (name, field, environment) in SCENES {
         let scene = scene(&folder, side, field, environment)?;
-        let exact = exact_light(&mut gpu, &scene)?;
+        let exact = exact_light(&mut gpu, &scene, 256)?;
         let mut points = Vec::new();
         for candidate in candidates() {
             points.push(point(&mut gpu, (&scene, &exact), candidate, runs, &points)?);
