@@ -128,6 +128,12 @@ const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// view uses MSAA; the tone curve.
 const LABELS: [&str; 5] =
     ["terrain_draw", "sky_draw", "plinth_draw", "depth_resolve", "picture_tone"];
+/// Places in [`LABELS`].
+const TERRAIN: usize = 0;
+const SKY: usize = 1;
+const PLINTH: usize = 2;
+const DEPTH_RESOLVE: usize = 3;
+const TONE: usize = 4;
 
 impl ViewRenderer {
     /// Makes the resources for views with the shape of `view`, for pictures of a format and `slots` frames in

@@ -7,7 +7,9 @@ use super::super::memory::{Backed, DEPTH, whole_attachment};
 use super::super::pipelines::Pipeline;
 use super::super::renderer::transition;
 use super::targets::CLEARED;
-use super::{LABELS, Slot, ViewInputs, ViewOutputs, ViewRenderer};
+use super::{
+    DEPTH_RESOLVE, LABELS, PLINTH, SKY, Slot, TERRAIN, TONE, ViewInputs, ViewOutputs, ViewRenderer,
+};
 use crate::gpu::{ImageArg, ImageState};
 use crate::graph::shaders::PictureTonePush;
 use crate::passes::plinth_draw;
@@ -84,7 +86,7 @@ impl ViewRenderer {
             .collect();
         let device = self.host.device.clone();
         let mut recorded = self.drawings;
-        recorded[3] = recorded[3].filter(|_| outputs.depth.is_some());
+        recorded[DEPTH_RESOLVE] = recorded[DEPTH_RESOLVE].filter(|_| outputs.depth.is_some());
         let labels: Vec<_> =
             LABELS.into_iter().zip(recorded).filter_map(|(label, d)| d.map(|_| label)).collect();
         let count = labels.len() + 1;
@@ -115,15 +117,15 @@ impl ViewRenderer {
         write_timestamp();
         let scene = this.render_passes.scene[usize::from(outputs.depth.is_some())];
         this.begin(commands, scene, at.framebuffers[0]);
-        this.draw(commands, (at, 0), bytemuck::bytes_of(&view.terrain), || {
+        this.draw(commands, (at, TERRAIN), bytemuck::bytes_of(&view.terrain), || {
             this.draw_tiles(commands, view.tiles);
         });
         write_timestamp();
         let triangle = || this.draw_triangle(commands);
-        this.draw(commands, (at, 1), bytemuck::bytes_of(&view.sky), triangle);
+        this.draw(commands, (at, SKY), bytemuck::bytes_of(&view.sky), triangle);
         write_timestamp();
-        if let (Some(_), Some(push)) = (recorded[2], &view.plinth) {
-            this.draw(commands, (at, 2), bytemuck::bytes_of(push), || {
+        if let (Some(_), Some(push)) = (recorded[PLINTH], &view.plinth) {
+            this.draw(commands, (at, PLINTH), bytemuck::bytes_of(push), || {
                 let vertices = plinth_draw::vertices(push);
                 // SAFETY: `commands` is being recorded within a render pass, a pipeline bound.
                 unsafe { device.cmd_draw(commands, vertices, plinth_draw::FACES, 0, 0) };
@@ -131,10 +133,10 @@ impl ViewRenderer {
             write_timestamp();
         }
         end();
-        if let (Some(_), Some(depth)) = (recorded[3], &this.depth) {
+        if let (Some(_), Some(depth)) = (recorded[DEPTH_RESOLVE], &this.depth) {
             wait(&[of_kind(transition(depth.image, 1, TESTED, FETCHED), FETCHED)]);
             this.begin(commands, this.render_passes.depth, at.framebuffers[1]);
-            this.draw(commands, (at, 3), &[], triangle);
+            this.draw(commands, (at, DEPTH_RESOLVE), &[], triangle);
             end();
             write_timestamp();
         }
@@ -142,7 +144,7 @@ impl ViewRenderer {
             wait(&[transition(linear.image, 1, DRAWN, READ)]);
             this.begin(commands, this.render_passes.tone, at.framebuffers[2]);
             let push = PictureTonePush { exposure };
-            this.draw(commands, (at, 4), bytemuck::bytes_of(&push), triangle);
+            this.draw(commands, (at, TONE), bytemuck::bytes_of(&push), triangle);
             end();
             write_timestamp();
         }
@@ -252,7 +254,7 @@ impl ViewRenderer {
     }
 
     fn write_sets(&self, slot: usize, inputs: &ViewInputs) {
-        let [terrain, sky, plinth, first, tone] = self.slots[slot].sets;
+        let [terrain, sky, plinth, resolve, tone] = self.slots[slot].sets;
         // Absent inputs are not read: any image is bound for them.
         let absent = &inputs.radiance;
         let voids = inputs.voids.as_ref().unwrap_or(absent);
@@ -263,17 +265,17 @@ impl ViewRenderer {
             (terrain, 2, voids.view),
             (sky, 0, environment.view),
         ];
-        if self.drawings[2].is_some() {
+        if self.drawings[PLINTH].is_some() {
             let views = [inputs.heights.view, inputs.radiance.view, voids.view];
             bound.extend((0..).zip(views).map(|(binding, view)| (plinth, binding, view)));
         }
         bound.extend(self.linear.as_ref().map(|linear| (tone, 0, linear.view)));
-        let depth = self.depth.as_ref().filter(|_| self.drawings[3].is_some());
-        bound.extend(depth.map(|depth| (first, 0, depth.view)));
+        let depth = self.depth.as_ref().filter(|_| self.drawings[DEPTH_RESOLVE].is_some());
+        bound.extend(depth.map(|depth| (resolve, 0, depth.view)));
         let infos: Vec<_> = bound
             .iter()
             .map(|(set, _, view)| {
-                let layout = if *set == first { FETCHED.layout } else { READ.layout };
+                let layout = if *set == resolve { FETCHED.layout } else { READ.layout };
                 [vk::DescriptorImageInfo::default().image_view(*view).image_layout(layout)]
             })
             .collect();
