@@ -31,6 +31,11 @@ pub fn grid([cols, rows]: [usize; 2], corner: [f64; 2], cell: f64, salt: usize) 
     text
 }
 
+/// Writes such a grid of cells of 30 m.
+fn write_grid(folder: &Folder, name: &str, size: [usize; 2], salt: usize) {
+    folder.write(name, grid(size, [500_000.0, 4_900_000.0], 30.0, salt).as_bytes());
+}
+
 /// Absolute heights; whole numbers are exact in a field.
 pub(super) fn absolute(field: &HeightField) -> Vec<f32> {
     field.heights_m().iter().map(|h| (field.base_m() + f64::from(*h)) as f32).collect()
@@ -48,8 +53,7 @@ fn heights(path: &Path, options: &HeightOptions) -> Vec<f32> {
 fn gdal_bands_have_the_values_that_gdal_reads() {
     let folder = Folder::new();
     for salt in 0..5 {
-        let text = grid([37, 29], [500_000.0, 4_900_000.0], 30.0, salt);
-        folder.write(&format!("{salt}.asc"), text.as_bytes());
+        write_grid(&folder, &format!("{salt}.asc"), [37, 29], salt);
         tool(&folder, &format!("gdal_translate -q {salt}.asc odd{salt}.tif"));
     }
     let all = (0..5).map(|salt| format!(" odd{salt}.tif")).collect::<String>();
@@ -109,7 +113,7 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_overviews_leave_the_heights_as_they_are() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([333, 277], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [333, 277], 0);
     for (name, place) in [("inside.tif", ""), ("beside.tif", "-ro ")] {
         let options = "-q -ot Float32 -co TILED=YES -co COMPRESS=DEFLATE";
         tool(&folder, &format!("gdal_translate {options} a.asc {name}"));
@@ -133,7 +137,7 @@ fn gdal_overviews_leave_the_heights_as_they_are() {
 fn gdal_scales_and_offsets_are_those_of_the_band() {
     let folder = Folder::new();
     for (name, salt) in [("plain.asc", 0), ("b.asc", 1)] {
-        folder.write(name, grid([37, 29], [500_000.0, 4_900_000.0], 30.0, salt).as_bytes());
+        write_grid(&folder, name, [37, 29], salt);
     }
     tool(&folder, "gdal_translate -q -a_scale 0.5 -a_offset 1000 b.asc scaled.tif");
     tool(&folder, "gdalbuildvrt -q -separate two.vrt plain.asc scaled.tif");
@@ -164,7 +168,7 @@ fn gdal_scales_and_offsets_are_those_of_the_band() {
 fn gdal_units_are_those_of_the_band() {
     let folder = Folder::new();
     for (name, salt) in [("1.asc", 0), ("2.asc", 1)] {
-        folder.write(name, grid([9, 7], [500_000.0, 4_900_000.0], 30.0, salt).as_bytes());
+        write_grid(&folder, name, [9, 7], salt);
     }
     tool(&folder, "gdalbuildvrt -q -separate plain.vrt 1.asc 2.asc");
     let plain = std::fs::read_to_string(folder.path("plain.vrt")).unwrap();
@@ -211,8 +215,7 @@ fn gdal_units_are_those_of_the_band() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_lzw_tiles_beyond_the_edge_are_read() {
     let folder = Folder::new();
-    let text = grid([333, 277], [500_000.0, 4_900_000.0], 30.0, 0);
-    folder.write("a.asc", text.as_bytes());
+    write_grid(&folder, "a.asc", [333, 277], 0);
     for kind in ["Byte", "Int16", "Int32", "Float32", "Float64"] {
         for options in ["", "-co PREDICTOR=2", "-co ENDIANNESS=BIG", "-co PREDICTOR=3"] {
             let is_float = kind.starts_with('F');
@@ -238,7 +241,7 @@ fn gdal_lzw_tiles_beyond_the_edge_are_read() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_values_are_the_stored_ones_where_white_is_zero() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [37, 29], 0);
     let forms = ["ENDIANNESS=LITTLE", "ENDIANNESS=BIG", "BIGTIFF=YES", "TILED=YES"];
     for (k, kind) in ["Byte", "UInt16", "Int16", "Float32"].into_iter().enumerate() {
         for (p, packed) in ["NONE", "LZW", "DEFLATE"].into_iter().enumerate() {
@@ -264,8 +267,7 @@ fn gdal_values_are_the_stored_ones_where_white_is_zero() {
 fn gdal_several_bands_get_a_note_and_colours_are_refused() {
     let folder = Folder::new();
     for salt in 0..3 {
-        let text = grid([9, 7], [500_000.0, 4_900_000.0], 30.0, salt);
-        folder.write(&format!("{salt}.asc"), text.as_bytes());
+        write_grid(&folder, &format!("{salt}.asc"), [9, 7], salt);
     }
     tool(&folder, "gdalbuildvrt -q -separate all.vrt 0.asc 1.asc 2.asc");
     tool(&folder, "gdal_translate -q -ot Float32 all.vrt several.tif");
@@ -322,7 +324,7 @@ fn gdal_masks_and_likely_voids_get_a_note() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_unread_compressions_are_named() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([9, 7], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [9, 7], 0);
     let mut refused = 0;
     for (kind, packed, name) in
         [("Byte", "JPEG", "JPEG"), ("Float32", "LERC", "LERC"), ("Float32", "LZMA", "LZMA")]
@@ -343,7 +345,7 @@ fn gdal_unread_compressions_are_named() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_files_that_are_cut_off_are_called_so() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([100, 60], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [100, 60], 0);
     tool(&folder, "gdal_translate -q -ot Float32 a.asc whole.tif");
     let whole = std::fs::read(folder.path("whole.tif")).unwrap();
     folder.write("cut.tif", &whole[..10_000]);
@@ -369,7 +371,7 @@ fn gdal_files_that_are_cut_off_are_called_so() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_no_data_values_are_voids() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [37, 29], 0);
     for (name, options) in [
         ("int.tif", "-ot Int16"),
         ("float.tif", "-ot Float32"),
@@ -428,7 +430,7 @@ fn gdal_sparse_tiles_are_voids() {
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_pngs_have_the_values_that_gdal_reads() {
     let folder = Folder::new();
-    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    write_grid(&folder, "a.asc", [37, 29], 0);
     for (kind, most) in [("Byte", 250.0_f32), ("UInt16", 62_500.0)] {
         for has_voids in [false, true] {
             let marked = if has_voids { format!("-a_nodata {most}") } else { String::new() };
