@@ -210,10 +210,7 @@ fn rooms(root: &Path) -> Result<Arrows, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn root() -> &'static Path {
-        Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository")
-    }
+    use crate::source::root;
 
     #[test]
     fn no_import_points_upward() {

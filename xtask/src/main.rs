@@ -29,8 +29,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                      with files for CMake and pkg-config";
 
 fn main() -> ExitCode {
-    let root =
-        Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask stands in the repository");
+    let root = source::root();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments.as_slice() {

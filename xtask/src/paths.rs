@@ -112,10 +112,7 @@ fn complaints(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn root() -> &'static Path {
-        Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository")
-    }
+    use crate::source::root;
 
     #[test]
     fn paths_and_names_of_the_pages_exist() {

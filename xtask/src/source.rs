@@ -8,6 +8,11 @@ use std::process::Command;
 /// What a command prints, or why it fails.
 pub type Outcome = Result<String, String>;
 
+/// The repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask stands in the repository")
+}
+
 /// Reads a file as text.
 pub fn read(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
