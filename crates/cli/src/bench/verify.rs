@@ -226,6 +226,12 @@ fn is_above_ground(key: &KeyLight, border: Border) -> bool {
     border == Border::Open || key.elevations_rad[1] > 0.0
 }
 
+/// The lowest and the highest height over the base.
+fn heights_m(field: &HeightField) -> [f64; 2] {
+    let all = || field.heights_m().iter().map(|h| f64::from(*h));
+    [all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max)]
+}
+
 /// R, G, B of a picture at some places; a grey one has one channel.
 fn colours(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
     let channel =

@@ -16,7 +16,7 @@ use ridgelight_cpu::sun_shade::{sun_slice, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, aimed_slope, device_fused_slope};
 
 use super::sweeps::{AimedLayers, Shaded, azimuths_of};
-use super::{colours, percent, refused, sentence};
+use super::{colours, heights_m, percent, refused, sentence};
 
 /// Checks the light of suns and key lights at some texels; `None` without such lights.
 pub(super) fn check(
@@ -78,7 +78,7 @@ fn allowed(
     places: &[usize],
     quality: &Quality,
 ) -> Vec<Allowed> {
-    let [low, high] = heights_m(scene);
+    let [low, high] = heights_m(&scene.field);
     let [x, y] = scene.field.cell_m();
     let tolerance = tolerance(azimuths, shaded.shape, high - low, x.min(y));
     let slice = |_, azimuth: &Azimuth, lowest: f64, normal: DVec3| {
@@ -86,12 +86,6 @@ fn allowed(
     };
     let all = allowed_by(scene, azimuths, shaded, places, quality, slice);
     all.into_iter().map(|place| Allowed { tolerance, ..place }).collect()
-}
-
-/// The lowest and the highest height over the base.
-fn heights_m(scene: &Scene) -> [f64; 2] {
-    let all = || scene.field.heights_m().iter().map(|h| f64::from(*h));
-    [all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max)]
 }
 
 /// The allowed light at each place, as a sum over azimuths. `slice` returns light and tolerance of one azimuth at a place, above a
@@ -107,7 +101,7 @@ pub(super) fn allowed_by(
     let (field, border) = (&scene.field, scene.surface.border);
     let oracle = Oracle::new(field, border);
     let heights = Heights::of(field, border);
-    let [low, high] = heights_m(scene);
+    let [low, high] = heights_m(field);
     let largest = low.abs().max(high.abs());
     let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
     // The CPU reference's horizon against the oracle's, and a device's against the CPU reference's.

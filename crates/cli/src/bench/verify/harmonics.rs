@@ -18,7 +18,9 @@ use ridgelight_cpu::tolerance::{
     ARC_TANGENT, ShadeError, device_fused_slope, device_resolved, two_devices,
 };
 
-use super::{Device, Verifier, Wanted, albedo_of, bounds, colours, percent, rms, sentence, within};
+use super::{
+    Device, Verifier, Wanted, albedo_of, bounds, colours, heights_m, percent, rms, sentence, within,
+};
 
 /// A place before it is lit.
 pub(super) struct Place {
@@ -152,8 +154,7 @@ impl Wanted {
         light: impl Fn(&Place, &Visibility, &ShadeError) -> [DVec3; 2],
     ) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
-        let heights = || field.heights_m().iter().map(|h| f64::from(*h));
-        let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
+        let [low, high] = heights_m(field);
         let cell = field.cell_m()[0].min(field.cell_m()[1]);
         // A march step is a cell or longer.
         let slope = two_devices(device_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;

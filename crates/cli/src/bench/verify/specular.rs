@@ -25,7 +25,7 @@ use ridgelight_cpu::tolerance::{
 };
 
 use super::harmonics::{Place, with_nodes};
-use super::{Device, Wanted, bounds, colours, is_above_ground, rms, sentence, within};
+use super::{Device, Wanted, bounds, colours, heights_m, is_above_ground, rms, sentence, within};
 
 /// The lobe where the plan reflects sky and environment by its slices.
 fn by_slices(scene: &Scene, plan: &Plan) -> Option<PhongSpecular> {
@@ -178,10 +178,8 @@ const VIEW_ERROR: f64 = 10.0 * EPSILON;
 
 /// Error of a field's normals, radians.
 fn normal_error(field: &HeightField) -> f64 {
-    let all = || field.heights_m().iter().map(|h| f64::from(*h));
-    let relief_m = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
-    let [x, y] = field.cell_m();
-    ShadeError::new(0.0, relief_m, x.min(y), 1).normal()
+    let ([low, high], [x, y]) = (heights_m(field), field.cell_m());
+    ShadeError::new(0.0, high - low, x.min(y), 1).normal()
 }
 
 /// Azimuths of the oracle's sky.

@@ -20,7 +20,7 @@ use ridgelight_cpu::sky_shade::sky_at;
 use ridgelight_cpu::sun_shade::{sun_at, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 
-use super::{Device, Wanted, colours, environments, is_above_ground, sentence};
+use super::{Device, Wanted, colours, environments, heights_m, is_above_ground, sentence};
 
 /// A sky of radiance 1 and the scene's suns and key lights on white ground, at some texels. None
 /// where the CPU reference does not [follow](followed) the sweeps.
@@ -127,8 +127,7 @@ fn lit_by<T>(
     }
     let lattices = &lattices;
     let swept = Swept { heights, azimuths: &azimuths, lattices, fuse, line_shift, warm_up };
-    let all = || field.heights_m().iter().map(|h| f64::from(*h));
-    let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
+    let [low, high] = heights_m(field);
     let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
     // A lattice's slope has an error of 6 ε of itself, which changes an angle by at most half of
     // that.
