@@ -5,6 +5,9 @@ use clap::{Args, ValueEnum};
 use super::values::{BOUNCES, ERROR, SEED, number};
 use super::{EyeArgs, GlobalArgs, Input, LightArgs, SurfaceArgs};
 
+const PLINTH_HELP: &str =
+    "Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]";
+
 // The camera draws no picture here: its flags have help of their own.
 #[derive(Args)]
 #[command(
@@ -18,10 +21,7 @@ use super::{EyeArgs, GlobalArgs, Input, LightArgs, SurfaceArgs};
     mut_arg("size", |arg| {
         arg.help("Width and height of the picture that the camera would draw, pixels").hide_short_help(true)
     }),
-    mut_arg("plinth", |arg| {
-        arg.help("Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]")
-            .long_help("Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]")
-    })
+    mut_arg("plinth", |arg| arg.help(PLINTH_HELP).long_help(PLINTH_HELP))
 )]
 pub struct ReferenceArgs {
     #[command(flatten)]

@@ -1,10 +1,12 @@
-//! The oracle's elevations by fewer crossings: a ray skips surface that cannot exceed its best slope so far.
+//! The oracle's elevations from fewer crossings: a ray skips pieces of the surface that cannot exceed the best slope so far.
 //!
-//! Over a piece of a ray no slope exceeds that of the highest grid point around the piece at the piece's nearer end, or at
-//! its farther end where that grid point lies below the ray's own. Blocks of heights hold the highest grid points. Pieces
-//! that might hold a better slope are visited crossing by crossing, as [`Oracle`] visits all: the best slope has the same
-//! bits, whichever piece comes first. The first piece is the one that held the horizon of the previous azimuth. The next horizon
-//! is usually near it, so the best slope is found early.
+//! The slopes of a piece have an upper bound: the height of the highest grid point around the piece over the ray's start, divided by
+//! the distance of the piece's nearer end. If that height is negative, the farther end counts. Blocks of heights hold the highest
+//! grid points. A piece whose bound exceeds the best slope is halved, and the shortest pieces are visited crossing by crossing, as
+//! [`Oracle`] visits all. The best slope is then the maximum of the same numbers, in whatever order, and has the same bits.
+//!
+//! The first piece visited is the one that held the horizon of the previous azimuth. The next horizon is usually near it, so a
+//! steep slope is found early.
 
 use super::oracle::{Family, Oracle, Ray, elevation_of_slope, grid_direction};
 

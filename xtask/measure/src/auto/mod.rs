@@ -27,7 +27,7 @@ use ridgelight_trade::auto::Drawn;
 
 use crate::common::args::Args;
 use crate::common::frames::drawn_as;
-use crate::common::terrains::BORDERS;
+use crate::common::terrains::{BORDERS, border_name};
 use crate::common::{Outcome, inputs};
 
 /// A file without a cell size gets one that makes its relief this share of its side.
@@ -124,8 +124,7 @@ fn scenes(
             if ((i + j) % 2 == 0) == is_fitted {
                 // The table is of level ground around each field. The pairs of the report take the borders in turn.
                 let border = if is_fitted { Border::Plane } else { BORDERS[(i + j / 2) % 3] };
-                let border_name = format!("{border:?}").to_lowercase();
-                let label = format!("{} | {light}, {border_name} border", name(path));
+                let label = format!("{} | {light}, {} border", name(path), border_name(border));
                 let mut scene = inputs::lit_by(field.clone(), lights);
                 scene.surface.border = border;
                 if let Some(exponent) = exponent {
