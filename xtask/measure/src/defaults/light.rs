@@ -154,8 +154,8 @@ impl Light {
         gpu.frame(plan, &[field.heights_m()])
     }
 
-    /// By brute force. Azimuths of a sky, those and the table of an environment and slices of a key light are finer than those of
-    /// `modes`, so that the errors include those of few azimuths.
+    /// By brute force. For light it has more azimuths, table elevations or slices than any of `modes`, so that their errors include
+    /// those of few azimuths.
     pub fn exact(&self, gpu: &mut Headless, scene: &Scene, modes: &[Mode]) -> Result<Exact> {
         let exact = Quality { method: Method::BruteForce, ..Quality::default() };
         Ok(match self.kind {
