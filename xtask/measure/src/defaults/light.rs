@@ -74,8 +74,8 @@ fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
     Light { name, kind: Kind::Key, lights: Lights { keys: vec![key], ..Lights::default() } }
 }
 
-/// The default, which is first, and the settings that it is compared with. Border `plane` has all of them. The other borders leave
-/// out the settings that are only slower or much slower, and keep the more accurate fuses.
+/// The default, which is first, and the settings that it is compared with. With border `plane` these are all. The other borders
+/// have those that may be faster, and two more accurate fuses, which show what accuracy costs there.
 pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };

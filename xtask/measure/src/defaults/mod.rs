@@ -72,8 +72,8 @@ pub fn run(mut args: Args) -> Outcome {
     println!(
         "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices of a key light; medians of {TURNS}, drawn in \
          turn (exact lines and brute force once)\n\
-         Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: \
-         against brute force in {} slices; `--lines exact` refuses key lights\n\
+         Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
+         {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {} slices; `--lines exact` refuses key lights\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
          f64 oracle in theirs at {PICKS} grid points\n\
          Borders: plane with all settings, the others with fewer; periodic on the first field of each ground\n\
