@@ -149,6 +149,34 @@ fn cells_in_the_unit_of_a_prj_get_a_note() {
     }
 }
 
+/// The note on cells in feet is on those of the file: there is none where the caller replaces them. A mosaic has one.
+#[test]
+fn cells_that_are_replaced_get_no_note() {
+    let folder = tempfile::tempdir().unwrap();
+    let foot = r#"PROJCS["mine",GEOGCS["x",UNIT["Degree",0.0174532925199433]],PROJECTION["y"],UNIT["Foot",0.3048]]"#;
+    let [west, east] = [("west", 1000), ("east", 1060)].map(|(name, x)| {
+        let path = folder.path().join(name).with_extension("asc");
+        let head = format!("ncols 2\nnrows 2\nxllcorner {x}\nyllcorner 2000\ncellsize 30\n");
+        std::fs::write(&path, head + "1 2\n3 4\n").unwrap();
+        std::fs::write(path.with_extension("prj"), foot).unwrap();
+        path
+    });
+    let tif = folder.path().join("a.tif");
+    let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002];
+    std::fs::write(&tif, with(&[SCALE, TIE, (KEYS, Tag::Shorts(&keys))])).unwrap();
+    let note = "cells are in units of 0.3048 m and become metres";
+    for paths in [vec![tif], vec![west.clone()], vec![west, east]] {
+        for cell_m in [None, Some([2.0, 3.0])] {
+            let options = HeightOptions { cell_m, ..HeightOptions::default() };
+            let read = read_mosaic(&paths, &options).unwrap();
+            let count = read.notes.iter().filter(|one| *one == note).count();
+            assert_eq!(count, usize::from(cell_m.is_none()), "{paths:?}: {:?}", read.notes);
+            let is_replaced = read.field.cell_m() == [2.0, 3.0];
+            assert_eq!(is_replaced, cell_m.is_some(), "{paths:?}");
+        }
+    }
+}
+
 /// The no-data value of the file stays in the heights where another replaces it: the warning counts them.
 #[test]
 fn a_replaced_no_data_value_is_counted() {

@@ -32,6 +32,8 @@ const WEB_MERCATOR: [u16; 2] = [3857, 3785];
 /// Values of the tags.
 pub(crate) struct Geo {
     pub cell: Cell,
+    /// Metres in a unit of the cells; 1 where the file states none.
+    pub cell_unit_m: f64,
     /// Metres in a unit of height, where the file states one that is known.
     pub unit_m: Option<f64>,
     /// What is assumed of a unit that is not stated or not known.
@@ -40,8 +42,6 @@ pub(crate) struct Geo {
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
     pub georeference: Option<Georeference>,
-    /// What is converted.
-    pub notes: Vec<String>,
     /// What is assumed.
     pub warnings: Vec<String>,
 }
@@ -69,7 +69,7 @@ pub(crate) fn read(
     let name = unit_name(path, tiff, band)?;
     let of_band = name.as_deref().and_then(unit::metres);
     let unit_m = of_band.or(of_system);
-    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    let mut warnings = Vec::new();
     let about_name = name.and_then(|name| unit::warning(&name, of_band, of_system));
     let mut unit_warning = None;
     match unit_m {
@@ -79,12 +79,12 @@ pub(crate) fn read(
     let Some(grid) = grid(path, tiff)? else {
         return Ok(Geo {
             cell: Cell::Unknown,
+            cell_unit_m: 1.0,
             unit_m,
             unit_warning,
             scale,
             nodata,
             georeference: None,
-            notes,
             warnings,
         });
     };
@@ -98,6 +98,7 @@ pub(crate) fn read(
         };
         Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0, is_guess })
     };
+    let mut cell_unit_m = 1.0;
     let cell = match keys.short(MODEL_TYPE) {
         Some(2) => match keys.short(ANGULAR_UNIT) {
             // EPSG: degree, degree (supplier to define representation).
@@ -116,14 +117,11 @@ pub(crate) fn read(
         }
         Some(1) => {
             let of_crs = keys.short(PROJECTED_CRS).and_then(projection::unit_m);
-            let unit = keys.length(path, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
-            if unit != 1.0 {
-                notes.push(unit::cell_note(unit));
-                if unit_m.is_none() {
-                    unit_warning.get_or_insert_with(|| unit::of_cells(unit));
-                }
+            cell_unit_m = keys.length(path, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
+            if cell_unit_m != 1.0 && unit_m.is_none() {
+                unit_warning.get_or_insert_with(|| unit::of_cells(cell_unit_m));
             }
-            Cell::Metres(grid.cell.map(|c| c * unit))
+            Cell::Metres(grid.cell.map(|c| c * cell_unit_m))
         }
         None | Some(0 | 32767) => match grid.origin {
             Some([west, north])
@@ -146,7 +144,7 @@ pub(crate) fn read(
     let georeference = grid
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
-    Ok(Geo { cell, unit_m, unit_warning, scale, nodata, georeference, notes, warnings })
+    Ok(Geo { cell, cell_unit_m, unit_m, unit_warning, scale, nodata, georeference, warnings })
 }
 
 /// Metres in the unit of a vertical coordinate reference system of the EPSG registry (v10.076), `None` for private

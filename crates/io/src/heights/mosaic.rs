@@ -22,7 +22,8 @@ pub(super) struct Tile {
 /// A grid that holds all tiles, or their part in a box. Its heights are those of the first tile that has one there.
 pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
     let Tile { path: first, raster: grid, .. } = &tiles[0];
-    let (first, at, cell) = (first.clone(), placed(first, grid)?.clone(), grid.cell);
+    let (first, at) = (first.clone(), placed(first, grid)?.clone());
+    let (cell, cell_unit_m) = (grid.cell, grid.cell_unit_m);
     let StoredHeights { data_type, nodata, scale, unit_m } = grid.stored();
     let mut corners = Vec::with_capacity(tiles.len());
     for Tile { path, raster, .. } in &tiles {
@@ -60,7 +61,7 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let [top, left] = [top + window.rows.start as i64, left + window.cols.start as i64];
     let values = open::zeros(&first, rows * cols)?;
     let bare = Raster::bare(rows, cols, values);
-    let mut whole = Raster { data_type, nodata, scale, unit_m, ..bare };
+    let mut whole = Raster { data_type, cell_unit_m, nodata, scale, unit_m, ..bare };
     let mut sums = Sums::default();
     // Whether a file holds the grid point, and whether none has its height.
     let mut is_held = vec![false; rows * cols];

@@ -1,6 +1,6 @@
 //! A decoded grid: values, cells and position, before they become a height field.
 
-use super::HeightOptions;
+use super::{HeightOptions, unit};
 use crate::georeference::Georeference;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -40,6 +40,8 @@ pub(crate) struct Raster {
     /// rounded to that type before it is compared.
     pub single: bool,
     pub cell: Cell,
+    /// Metres in the file's unit of cells; 1 where it states none.
+    pub cell_unit_m: f64,
     /// Metres in the file's unit of height, where the file states one that is known.
     pub unit_m: Option<f64>,
     /// What is assumed of that unit, where the file does not.
@@ -71,6 +73,7 @@ impl Raster {
             data_type: String::new(),
             single: false,
             cell: Cell::Unknown,
+            cell_unit_m: 1.0,
             unit_m: None,
             unit_warning: None,
             scale: [1.0, 0.0],
@@ -166,18 +169,22 @@ impl Raster {
 
     /// How cells become metres.
     pub fn cell_notes(&self) -> Vec<String> {
-        let Some((latitude, cell)) = self.cell.degrees() else { return Vec::new() };
+        let mut notes = Vec::new();
+        if self.cell_unit_m != 1.0 {
+            notes.push(unit::cell_note(self.cell_unit_m));
+        }
+        let Some((latitude, cell)) = self.cell.degrees() else { return notes };
         let [east, north] = metres_a_degree(latitude);
-        let (unit, is_guess) = match self.cell {
+        let (of, is_guess) = match self.cell {
             Cell::Mercator { .. } => ("Web Mercator metres", false),
             Cell::Degrees { is_guess, .. } => ("degrees", is_guess),
-            Cell::Unknown | Cell::Metres(_) => return Vec::new(),
+            Cell::Unknown | Cell::Metres(_) => return notes,
         };
-        let mut notes = vec![format!(
-            "cells of {:.1} x {:.1} m, from {unit} at latitude {latitude:.2}",
+        notes.push(format!(
+            "cells of {:.1} x {:.1} m, from {of} at latitude {latitude:.2}",
             cell[0] * east,
             cell[1] * north
-        )];
+        ));
         if is_guess {
             let text =
                 "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`";

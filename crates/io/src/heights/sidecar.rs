@@ -102,7 +102,7 @@ impl Sidecar {
                     GeoKeys::of_code(code, crs.is_geographic)
                 });
                 if !crs.is_geographic && crs.unit_m != 1.0 {
-                    notes.push(unit::cell_note(crs.unit_m));
+                    raster.cell_unit_m = crs.unit_m;
                     if raster.unit_m.is_none() {
                         raster.unit_warning.get_or_insert_with(|| unit::of_cells(crs.unit_m));
                     }

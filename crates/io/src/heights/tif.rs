@@ -298,13 +298,14 @@ pub(super) fn heights(
     let mut raster = Raster {
         data_type: image.type_name(),
         cell: geo.cell,
+        cell_unit_m: geo.cell_unit_m,
         unit_m: geo.unit_m,
         unit_warning: geo.unit_warning,
         scale: geo.scale,
         nodata: geo.nodata,
         is_8_bit,
         georeference: geo.georeference,
-        notes: note.into_iter().chain(geo.notes).collect(),
+        notes: note.into_iter().collect(),
         warnings: mask_warning(path, bytes).into_iter().chain(geo.warnings).collect(),
         ..Raster::bare(rows, cols, Vec::new())
     };
