@@ -4,12 +4,35 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::generate::stage;
+use super::reflect::op::MODULE_PROCESSED;
 use super::{fail, read};
 
 /// The SPIR-V of one shader. The first error stops the build with file and line.
 pub(crate) fn compile(path: &Path) -> Vec<u32> {
     let (text, files) = include(path);
     translate(&text, &files)
+}
+
+/// A module with the name of its shader in it: an OpModuleProcessed after the other debug instructions (SPIR-V specification,
+/// section 2.4). Drivers ignore it.
+pub(crate) fn named(mut words: Vec<u32>, name: &str) -> Vec<u32> {
+    // OpSourceContinued to OpString.
+    const DEBUG: std::ops::RangeInclusive<u32> = 2..=7;
+    let (mut next, mut end) = (5, 5);
+    while let Some(first) = words.get(next) {
+        next += (first >> 16) as usize;
+        if DEBUG.contains(&(first & 0xffff)) {
+            end = next;
+        }
+    }
+    // A literal string ends with a byte 0.
+    let mut text = name.as_bytes().to_vec();
+    text.resize(text.len() / 4 * 4 + 4, 0);
+    let text = text.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word));
+    let first = (1 + text.len() as u32) << 16 | MODULE_PROCESSED;
+    let instruction: Vec<u32> = std::iter::once(first).chain(text).collect();
+    words.splice(end..end, instruction);
+    words
 }
 
 /// Inlines `#include "x"` lines (relative to the shader's folder, each file once). Returns the text with

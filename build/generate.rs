@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
-use super::compile::compile;
+use super::compile::{compile, named};
 use super::reflect::{self, Layouts, Reflection, reflect};
 use super::{fail, write};
 
@@ -52,13 +52,13 @@ pub(crate) fn core(out: &Path) {
     write(&out.join("shaders.spv"), &bytes);
 }
 
-/// The SPIR-V of each shader, from its GLSL.
+/// The SPIR-V of each shader, from its GLSL, with its name in it.
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
 fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
-    sources.iter().map(|path| compile(path)).collect()
+    sources.iter().map(|path| named(compile(path), &name_of(path))).collect()
 }
 
-/// The SPIR-V of each shader, from the committed file.
+/// The SPIR-V of each shader, from the committed file: [`reflect`] refuses a module of another name.
 #[cfg(not(any(feature = "glslang", feature = "shaderc")))]
 fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
     // The first word of a module. Elsewhere it would give one module too many, which is refused.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::fail;
 
 /// Opcodes.
-mod op {
+pub(crate) mod op {
     pub const NAME: u32 = 5;
     pub const MEMBER_NAME: u32 = 6;
     pub const TYPE_VOID: u32 = 19;
@@ -32,6 +32,7 @@ mod op {
     pub const VARIABLE: u32 = 59;
     pub const DECORATE: u32 = 71;
     pub const MEMBER_DECORATE: u32 = 72;
+    pub const MODULE_PROCESSED: u32 = 330;
 }
 
 /// Decorations.
@@ -108,11 +109,17 @@ pub(crate) struct Layouts {
 }
 
 /// Reflects one shader and adds the layouts of its structs. Structs of one name must have one layout in all
-/// shaders.
+/// shaders. The module must state the shader's name, as `compile::named` writes it.
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
     let d = Declarations::read(words).unwrap_or_else(|| {
         fail(&format!("{name}: the SPIR-V is cut off: found no OpFunctionEnd at its end"))
     });
+    if d.shader != name {
+        let found = &d.shader;
+        fail(&format!(
+            "{name}: found the SPIR-V of {found:?}, expected {name:?}; run tools/shaders"
+        ));
+    }
     let (push, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
     Reflection { push, bindings, constants: constants(name, &d) }
@@ -317,6 +324,8 @@ pub(crate) fn snake(name: &str) -> String {
 
 /// What a module declares before its functions.
 struct Declarations<'m> {
+    /// The name of the shader, empty where the module does not state it.
+    shader: String,
     /// By id, and by member for those of members.
     names: HashMap<(u32, Option<u32>), String>,
     /// The first operand, 0 without any, by id, member and decoration.
@@ -339,7 +348,7 @@ impl<'m> Declarations<'m> {
     /// is cut off there has all declarations.
     fn read(words: &'m [u32]) -> Option<Self> {
         let (mut names, mut decorations) = (HashMap::new(), HashMap::new());
-        let mut values = BTreeMap::new();
+        let (mut shader, mut values) = (String::new(), BTreeMap::new());
         // After the header.
         let mut rest = words.get(5..)?;
         let (mut is_declared, mut last) = (false, 0);
@@ -360,6 +369,7 @@ impl<'m> Declarations<'m> {
                 (op::MEMBER_NAME, [target, member, text @ ..]) => {
                     names.insert((*target, Some(*member)), string(text));
                 }
+                (op::MODULE_PROCESSED, text) => shader = string(text),
                 (op::DECORATE, [target, what, operands @ ..]) => {
                     decorations.insert((*target, None, *what), first_of(operands));
                 }
@@ -378,7 +388,7 @@ impl<'m> Declarations<'m> {
                 _ => {}
             }
         }
-        (last == op::FUNCTION_END).then_some(Self { names, decorations, values })
+        (last == op::FUNCTION_END).then_some(Self { shader, names, decorations, values })
     }
 
     /// All values of an opcode, with their ids.

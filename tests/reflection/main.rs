@@ -20,10 +20,13 @@ const FUNCTION: u32 = (1 << 16) | 54;
 const FUNCTION_END: u32 = (1 << 16) | 56;
 /// A module's first five words.
 const HEADER: [u32; 5] = [0x0723_0203, 0, 0, 0, 0];
+/// OpModuleProcessed: the name of the shader.
+const NAMED_TEST: [u32; 3] = [(3 << 16) | 330, u32::from_le_bytes(*b"test"), 0];
 
 /// Reflects push constants: `add` gives types and offsets of the members of `TestPush`.
 fn reflected(add: impl FnOnce(&mut Builder) -> Vec<Member>) -> (Reflection, Layouts) {
     let mut builder = Builder::new();
+    builder.module_processed("test");
     let members = add(&mut builder);
     let structure = builder.type_struct(members.iter().map(|(of_type, _)| *of_type));
     builder.name(structure, "TestPush");
@@ -73,9 +76,25 @@ fn matrix(builder: &mut Builder, stride: Option<u32>, order: Decoration) -> u32 
     matrix
 }
 
-/// Reflects a module of these instructions.
+/// Reflects a module of the shader `test` with these instructions.
 fn read(instructions: &[u32]) {
-    reflect::reflect("test", &[&HEADER[..], instructions].concat(), &mut Layouts::default());
+    let words = [&HEADER[..], &NAMED_TEST, instructions].concat();
+    reflect::reflect("test", &words, &mut Layouts::default());
+}
+
+/// The committed SPIR-V has modules in the order of their sources. If one is removed and another is added, later ones move.
+#[test]
+#[should_panic(expected = "other: found the SPIR-V of \"test\", expected \"other\"")]
+fn modules_of_other_shaders_are_refused() {
+    let words = [&HEADER[..], &NAMED_TEST, &[FUNCTION, FUNCTION_END]].concat();
+    reflect::reflect("other", &words, &mut Layouts::default());
+}
+
+#[test]
+#[should_panic(expected = "test: found the SPIR-V of \"\", expected \"test\"")]
+fn modules_without_a_name_are_refused() {
+    let words = [&HEADER[..], &[FUNCTION, FUNCTION_END]].concat();
+    reflect::reflect("test", &words, &mut Layouts::default());
 }
 
 /// OpFunction, OpFunctionEnd: neither declares anything.
