@@ -48,6 +48,7 @@ mod embedding {
     mod in_flight;
     mod lifetimes;
     mod plan_changes;
+    mod repeated;
     mod wrong_heights;
 }
 #[expect(dead_code, reason = "its main, which prints")]

@@ -194,6 +194,16 @@ impl Recorded {
         unsafe { device.queue_submit(queue, &submit, self.fence) }
     }
 
+    /// Submits it and waits for it, after which it may be submitted again.
+    pub(super) fn run(&self, device: &ash::Device, queue: vk::Queue) {
+        self.submit(device, queue);
+        // SAFETY: the fence is that of the submission, which has ended when it is reset.
+        unsafe {
+            device.wait_for_fences(&[self.fence], true, u64::MAX).expect("done");
+            device.reset_fences(&[self.fence]).expect("reset");
+        }
+    }
+
     /// Waits for it, and frees it.
     pub(super) fn end(self, device: &ash::Device) {
         // SAFETY: submitted above.
