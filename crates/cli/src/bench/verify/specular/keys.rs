@@ -34,7 +34,11 @@ pub(super) fn check(
     let mut texts = vec![judge(&found, &all, quality)?.text("key specular")];
     if keys.iter().any(|key| horizons(quality, key.shaded) == Horizons::Near) {
         let [of_sky, ..] = bounds(scene, dark, quality);
-        texts.extend(judge_all(&found, &all, of_sky, quality)?);
+        let more = || {
+            let places = more_places(scene);
+            (colours(layer, &places), allowed(scene, &keys, &places, quality))
+        };
+        texts.extend(judge_enough((&found, &all), more, of_sky, quality)?);
     }
     let is_swept = plan.passes.iter().any(|pass| pass.name() == "horizon_sweep");
     let lines = followed(scene, quality).filter(|_| is_swept);
@@ -150,6 +154,34 @@ fn judge(found: &[DVec3], all: &[Reflected], quality: &Quality) -> Result<Judged
 /// Share of equally bright places that may be lit instead of dark, or dark instead of lit: that of suns in [`bounds`].
 const WRONG_SHARE: f64 = 0.16;
 
+/// About this many texels are compared where too few of the usual ones are bright.
+const MORE_PLACES: usize = 1600;
+
+/// These texels, spread over the field as the usual ones.
+fn more_places(scene: &Scene) -> Vec<usize> {
+    let count = scene.field.rows() * scene.field.cols();
+    (0..count).step_by((count / MORE_PLACES).max(1) | 1).collect()
+}
+
+/// [`judge_all`], at `more` places where too few of these are bright. Those are then judged one by one, too.
+fn judge_enough(
+    (found, all): (&[DVec3], &[Reflected]),
+    more: impl FnOnce() -> (Vec<DVec3>, Vec<Reflected>),
+    of_sky: f64,
+    quality: &Quality,
+) -> Result<Option<String>> {
+    // Where no place is lit, the bound is NaN or infinite.
+    if bound_of(all, of_sky) < BLACK {
+        return judge_all(found, all, of_sky, quality);
+    }
+    let (found, all) = more();
+    judge(&found, &all, quality)?;
+    judge_all(&found, &all, of_sky, quality)
+}
+
+/// The relative error of an image without light.
+const BLACK: f64 = 1.0;
+
 /// Judges all places together where the range of each reaches down to 0; `None` where the oracle finds no light.
 fn judge_all(
     found: &[DVec3],
@@ -166,8 +198,7 @@ fn judge_all(
     let error = rms(errors.flat_map(values)) / light;
     let bound = bound_of(all, of_sky);
     let errors = within("specular of key lights", "the oracle", error, bound, quality)?;
-    // Black has an error of 1.
-    if bound >= 1.0 {
+    if bound >= BLACK {
         let error = percent(error);
         return Ok(Some(format!(
             "key specular at all places is not judged, as too few of them are bright: error {error} against the oracle"
@@ -329,6 +360,41 @@ mod tests {
             dark[brightest] = DVec3::ZERO;
             assert_eq!(judge(&dark, &all, &quality).is_ok(), may_be_dark);
         }
+    }
+
+    /// Of one bright place nothing is known, so black would pass. It is refused at more places, which are not computed where
+    /// they are not needed.
+    #[test]
+    fn more_places_are_compared_where_too_few_are_bright() {
+        let quality = Quality { fuse: Fuse::Nearest, ..Quality::default() };
+        let bright = |count: usize| {
+            let place = Reflected {
+                light: DVec3::ONE,
+                range: [DVec3::ZERO, DVec3::ONE],
+                tolerance: DVec3::splat(1e-6),
+            };
+            vec![place; count]
+        };
+        let judged = |count: usize, light: f64| {
+            let [few, many] = [bright(count), bright(100)];
+            let found = vec![DVec3::ONE; count];
+            let more = || (vec![DVec3::splat(light); 100], many);
+            judge_enough((&found, &few), more, 0.1, &quality)
+        };
+        for count in [0, 1, 2] {
+            let text = judged(count, 1.0).unwrap().expect("lit");
+            assert!(text.starts_with("key specular at all places error 0.000 %"), "{text}");
+            let error = judged(count, 0.0).unwrap_err().to_string();
+            assert!(error.contains("specular of key lights has an error of 100.00 %"), "{error}");
+            // More than unshadowed at each of them.
+            let error = judged(count, 1.1).unwrap_err().to_string();
+            assert!(error.contains("specular of key lights at one place"), "{error}");
+        }
+        // Enough of them are bright: what `more` would find does not count.
+        assert!(judged(100, 0.0).unwrap().is_some());
+        // All texels of a small field, and about as many of a larger one.
+        let of = |size: usize| more_places(&fractal(size, Lights::default())).len();
+        assert_eq!((of(32), of(128)), (32 * 32, (128 * 128_usize).div_ceil(11)));
     }
 
     /// Where each place may be dark, all of them may not: black is refused, and so is light that is wrong by more than the bound.
