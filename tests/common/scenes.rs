@@ -149,8 +149,9 @@ impl Agreement {
         paths: f64,
         rounding: f64,
     ) -> Self {
-        let z = |off: f64, allowed: f64, sigma: f64| match (off.abs() - allowed).max(0.0) {
-            0.0 => 0.0,
+        // NaN is not within what is allowed.
+        let z = |off: f64, allowed: f64, sigma: f64| match off.abs() - allowed {
+            within if within <= 0.0 => 0.0,
             beyond => beyond / sigma,
         };
         let (mut squares, mut worst, mut mean) = (0.0, 0.0_f64, 0.0_f64);

@@ -116,6 +116,8 @@ fn agreement_separates_noise_from_error() {
     let mut one = noisy.clone();
     one[70][1] += 0.02;
     assert!(of(&one, &sigma).worst > 6.0);
+    one[70][1] = f64::NAN;
+    assert!(!of(&one, &sigma).holds());
     let hidden = vec![[2e-4; 3]; right.len()];
     assert!(!of(&noisy, &hidden).holds());
 }
