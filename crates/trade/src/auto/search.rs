@@ -508,6 +508,35 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::scene::{HeightField, Lights, Surface};
+
+    /// The texels that confirm a choice are the requested ones; where more are wanted, also some of a new seed; or all texels, each
+    /// once.
+    #[test]
+    fn requested_texels_confirm_the_choice() {
+        let heights: Vec<f64> = (0..80).map(|i| f64::from(i * i % 11)).collect();
+        let scene = Scene {
+            field: HeightField::new(8, 10, &heights, [1.0; 2], None).unwrap(),
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+        };
+        let unsure: Vec<f64> = (0..80).map(|i| f64::from(i % 7)).collect();
+        OracleLight::with(&Lit::of(&scene), |oracle| {
+            let of = |count: usize, seed: u64| Probes::by(oracle, count, seed, &unsure).unwrap();
+            let goal = Goal::MaxError(0.1);
+            let mut judge = Judge::new(oracle, (20, 3), unsure.clone(), None, goal).unwrap();
+            let requested = judge.request(16).unwrap();
+            assert_ne!(of(20, requested.seed).places(), judge.probes.places());
+            let own = of(16, requested.seed);
+            assert_eq!(judge.confirming(requested, 16).unwrap().places(), own.places());
+            let more = judge.confirming(requested, 24).unwrap();
+            let others = of(8, judge.seed);
+            assert_eq!(more.places(), [own.places(), others.places()].concat());
+            assert_ne!(others.places(), of(8, requested.seed).places());
+            let all = judge.confirming(requested, 80).unwrap();
+            assert_eq!(all.places(), (0..80).collect::<Vec<usize>>());
+        });
+    }
 
     /// With 3000 probes the bound's square lies 3e-4 above the error's, and so does the square of 2 %, halfway to a goal of 3 %.
     /// The square of half the way to the second goal lies half as far above: four times the probes. A goal far away takes
