@@ -268,6 +268,11 @@ fn gpu_horizons_begin_in_the_north() {
     assert_eq!(exr.planes, angles.planes);
     done(&folder, "compare h.npy h.npy --horizons");
 
+    // Of 64 azimuths a name has the decimals of its azimuth.
+    done(&folder, "horizon field.npy -o many.exr --azimuths 64");
+    let names = read(&folder.path("many.exr")).names;
+    assert_eq!(names[..3], ["azimuth_000.0", "azimuth_005.625", "azimuth_011.25"]);
+
     // Exact azimuths are uneven; the JSON file lists them.
     done(&folder, "horizon field.npy -o x.npy --azimuths 8 --lines exact --json x.json");
     assert_eq!(json(&folder.path("x.json"))["azimuths_deg"].as_array().unwrap().len(), 8);
