@@ -42,8 +42,10 @@ fn scene([sky, one, other, patch]: Colours) -> Scene {
     }
 }
 
+/// Alpha has no effect: it is 0 or 1.
 fn texels(colours: Colours) -> Vec<f32> {
-    colours.iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect()
+    let all = colours.iter().zip([1.0, 0.0, 0.0, 1.0]);
+    all.flat_map(|([r, g, b], alpha)| [*r, *g, *b, alpha]).collect()
 }
 
 fn planned(scene: &Scene, limits: &Limits, wanted: Picture) -> Plan {
