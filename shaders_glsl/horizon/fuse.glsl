@@ -18,7 +18,7 @@ const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the grid point's own line
                                      // line's occluder; and the first crossings of its own line
 const uint FUSE_AIMED = 5u;          // the same with both lines' occluders, the higher one
 
-const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing within two steps of either occluder
+const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing beside the nearer line's occluder
 
 const uint FUSE_CROSSINGS = 7u;      // no lattice: first crossings only
 
@@ -87,18 +87,93 @@ vec4 slopes_of(uvec4 values) {
     return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
 }
 
-// Ridges that unit steps miss stand beside a proposal: all crossings within two steps of both lines' proposals,
-// `back` steps ahead; 0 for none. `reach` steps lie ahead.
-void look_around_both(Azimuth azimuth, int lane, int step, float own, ivec2 back, int reach, int lanes, int steps, inout vec2 best) {
-    int first = back.x > 0 ? back.x : back.y;
-    int second = back.y > 0 ? back.y : back.x;
-    int near = min(first, second);
-    int far = max(first, second);
-    ivec2 ahead = ivec2(max(near - 1, 1), min(near + 2, reach));
-    // Then the rest of the other proposal's: one call, as SwiftShader compiles each call separately.
-    for (int side = 0; side < 2 && near > 0 && ahead.x <= ahead.y; side++) {
-        look_around(azimuth, lane, step, own, ahead, lanes, steps, best);
-        ahead = ivec2(max(far - 1, near + 3), min(far + 2, reach));
+// Lane positions at the far end of a step on the own lines of four grid points, the step's number, and whether a line has
+// that step.
+struct Segment {
+    ivec4 y;
+    vec4 back;
+    bvec4 exists;
+};
+
+// Where the lines cross edges of the surface, `u` of the step before its far end, between heights `far` and `near`.
+Met crossing_of(Azimuth azimuth, Segment segment, vec4 own, vec4 far, vec4 near, vec4 u, bvec4 crosses) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    // A line that does not repeat ends at the edge, half a unit of rounding aside.
+    bvec4 is_on = greaterThanEqual(vec4(segment.y) + u * float(azimuth.shear), vec4(wraps ? -1e9 : -0.5));
+    bvec4 meets = bvec4(uvec4(segment.exists) & uvec4(crosses) & uvec4(is_on) & uvec4(lessThan(u, vec4(1.0))));
+    Met met;
+    met.steps = segment.back - u;
+    met.slope = ((far - own) + u * (near - far)) * (1.0 / azimuth.step_m) / met.steps;
+    met.slope = mix(vec4(NO_SLOPE), met.slope, meets);
+    return met;
+}
+
+// Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
+// proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
+// lie there. `reach` steps lie ahead.
+void look_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bvec4 split_along = bvec4(flips_march == flips_lanes);
+    bvec4 split_across = not(split_along);
+    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
+    int step = march_position(azimuth, q.march, steps);
+    float advance = float(azimuth.shear) * (1.0 / float(CELL));
+    vec4 own = q.here.four;
+    ivec4 at = mix(other, nearer, greaterThan(nearer, ivec4(0)));
+    ivec4 towards = mix(ivec4(0), sign(other - at), greaterThan(other, ivec4(0)));
+    ivec4 first = max(at + min(towards, 0), 1);
+    ivec4 last = mix(ivec4(0), min(at + 1 + max(towards, 0), reach), greaterThan(at, ivec4(0)));
+    // Lines along lanes have no end across them.
+    int edge = wraps || azimuth.shear == 0 ? -0x7fffffff : 0;
+
+    // Heights of four lanes, from the one before the line's cell on: a column of the matrix for each lane.
+    ivec4 y = lane * CELL - (first - 1) * azimuth.shear;
+    ivec4 near_cell = y >> CELL_SHIFT;
+    mat4 near;
+    for (int k = 0; k < 4; k++) {
+        near[k] = row_at(azimuth, near_cell[k] - 1, step - first[k] + 1, lanes, steps);
+    }
+    near = transpose(near);
+    for (int i = 0; i < 3; i++) {
+        ivec4 back = first + i;
+        bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(y, ivec4(edge))));
+        y -= azimuth.shear;
+        ivec4 cell = y >> CELL_SHIFT;
+        mat4 far;
+        for (int k = 0; k < 4; k++) {
+            far[k] = row_at(azimuth, cell[k] - 1, step - back[k], lanes, steps);
+        }
+        far = transpose(far);
+        bvec4 same_cell = equal(cell, near_cell);
+        vec4 near_low = mix(near[0], near[1], same_cell);
+        vec4 near_high = mix(near[1], near[2], same_cell);
+
+        // As in segment_crossings: `from` and `end` are places across the cell of the step's far end.
+        vec4 from = vec4(y & (CELL - 1)) * (1.0 / float(CELL));
+        vec4 end = from + advance;
+        bvec4 inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
+        bvec4 passes_lane = greaterThan(end, vec4(1.0 + HAIR));
+        bvec4 passes_split = mix(greaterThan(end, vec4(0.0)), inside, split_along);
+        bvec4 passes_next_split = bvec4(uvec4(passes_lane) & uvec4(split_across));
+        vec4 to_split = mix((1.0 - from) / (1.0 + advance), from / max(1.0 - advance, 1e-9), split_along);
+        vec4 far_of_split = mix(far[2], far[1], split_along);
+        vec4 near_of_split = mix(near_low, near_high, split_along);
+        Segment segment = Segment(y, vec4(back), exists);
+        Met next;
+        next.steps = segment.back;
+        next.slope = ((far[1] - own) + from * (far[2] - far[1])) * (1.0 / azimuth.step_m) / segment.back;
+        bvec4 on_field = bvec4(uvec4(exists) & uvec4(greaterThanEqual(y, ivec4(wraps ? -0x7fffffff : 0))));
+        next.slope = mix(vec4(NO_SLOPE), next.slope, on_field);
+        met = higher(met, next);
+        met = higher(met, crossing_of(azimuth, segment, own, far_of_split, near_of_split, to_split, passes_split));
+        vec4 to_lane = (1.0 - from) / max(advance, 1e-9);
+        met = higher(met, crossing_of(azimuth, segment, own, far[2], near_high, to_lane, passes_lane));
+        vec4 to_next_split = (2.0 - from) / (1.0 + advance);
+        met = higher(met, crossing_of(azimuth, segment, own, far[3], near_high, to_next_split, passes_next_split));
+        near = far;
+        near_cell = cell;
     }
 }
 
@@ -222,14 +297,11 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         met = higher(met, surface_at(azimuth, q, y, before_far, lanes, steps));
         met = higher(met, surface_at(azimuth, q, y, after_far, lanes, steps));
         if (FUSE == FUSE_AIMED_AROUND) {
-            for (int k = 0; k < 4; k++) {
-                if (met.slope[k] < enough[k]) {
-                    vec2 best = vec2(met.slope[k], met.steps[k]);
-                    ivec2 back = ivec2(before_back[k], after_back[k]);
-                    look_around_both(azimuth, lane[k], step, q.here.four[k], back, at.step, lanes, steps, best);
-                    met.slope[k] = best.x;
-                    met.steps[k] = best.y;
-                }
+            bvec4 takes_after = bvec4(uvec4(lines.has_after) & (uvec4(greaterThan(offset, ivec4(spacing / 2))) | uvec4(not(lines.has_before))));
+            ivec4 nearer = ivec4(mix(before_back, after_back, takes_after));
+            ivec4 other = ivec4(mix(after_back, before_back, takes_after));
+            if (any(lessThan(met.slope, enough))) {
+                look_beside(azimuth, q, nearer, other, at.step, lanes, steps, met);
             }
         }
         return met;

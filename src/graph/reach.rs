@@ -60,6 +60,17 @@ impl Rectangle {
         [col, row, col + cols - 1, row + rows - 1].map(|v| v as i32)
     }
 
+    /// With this many grid points more on every side, within a field of `cols` × `rows`.
+    fn grown(self, by: u32, [cols, rows]: [u32; 2]) -> Self {
+        let along = |first: u32, count: u32, all: u32| {
+            let start = first.saturating_sub(by);
+            (start, (first + count).saturating_add(by).min(all) - start)
+        };
+        let (col, cols) = along(self.col, self.cols, cols);
+        let (row, rows) = along(self.row, self.rows, rows);
+        Self { col, row, cols, rows }
+    }
+
     /// First lane, lanes, march positions.
     fn along(self, axis: Axis) -> [u32; 3] {
         if axis.marches_rows {
@@ -78,8 +89,9 @@ pub enum Reach {
     Whole,
     /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
     Quads(Axis),
-    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible.
-    Lines(Axis, u32),
+    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible; the
+    /// rectangle has so many grid points more on every side.
+    Lines(Axis, u32, u32),
 }
 
 /// Invocations of a group of quads, along either side.
@@ -92,6 +104,10 @@ impl Pass {
     pub(crate) fn for_edit(&self, rectangle: Rectangle) -> ([u32; 3], Vec<u8>) {
         let mut push = self.push.clone();
         let Some(reach) = self.reach else { return (self.groups, push) };
+        let rectangle = match reach {
+            Reach::Lines(axis, _, around) => rectangle.grown(around, axis.size()),
+            _ => rectangle,
+        };
         let at = push.len() - size_of::<[i32; 4]>();
         push[at..].copy_from_slice(bytemuck::bytes_of(&rectangle.words()));
         let [x, y, z] = self.groups;
@@ -102,7 +118,7 @@ impl Pass {
                 let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
                 [quads.div_ceil(QUADS_SIDE), marches.div_ceil(QUADS_SIDE), z]
             }
-            Reach::Lines(axis, line_shift) => {
+            Reach::Lines(axis, line_shift, _) => {
                 let [_, lanes, marches] = rectangle.along(axis).map(u64::from);
                 // Adds the line spacing, a lane on each side and the steepest shear; the first group begins at a multiple of its
                 // lines.

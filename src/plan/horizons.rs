@@ -24,7 +24,7 @@ pub fn horizons(
     quality.check()?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
-    let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?;
+    let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?.of_few();
     if distances && matches!(&sweep, Sweep::Lines(l) if !l.writes_occluders || l.slope_format > 0) {
         return Err(Error::setting(
             "distances to the horizon",
@@ -74,6 +74,6 @@ pub fn horizons(
             (Some(written), distances),
         );
     }
-    let used = settings(quality, Some(&sweeping.sweep), border);
+    let used = settings(Some(&sweeping.sweep), border);
     Plan::finish(builder, size, lists.lists.concat(), notes, used, limits)
 }

@@ -184,6 +184,14 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             Err(None) => {}
         }
     }
+    if !images.need_circle() {
+        sweep = sweep.of_few();
+    } else if sweep != sweep.of_few() && active.aimed().count() > of_lights.len() {
+        notes.push(
+            "`fuse aimed-around` for lights of few azimuths: suns and key lights without shadow heights"
+                .into(),
+        );
+    }
     let first_aimed = usize::from(images.need_circle());
     held.shadows.extend(of_lights.iter().map(|i| first_aimed + i));
     let shadows = (!of_lights.is_empty()).then(|| {
@@ -324,7 +332,7 @@ fn used(
     images: &Images,
     soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {
-    let mut used = settings(quality, sweep, border);
+    let mut used = settings(sweep, border);
     if images.need_circle() {
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }

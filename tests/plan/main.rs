@@ -375,17 +375,47 @@ fn key_lights() {
     assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
 }
 
-/// Edits mark texels that keep an occluder; a fuse that searches around it cannot.
+/// Edits continue from occluders; a fuse that reads slopes stores none.
 #[test]
-fn views_take_no_edits() {
+fn fuses_that_store_occluders_take_edits() {
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let edits = |fuse| {
         let quality = Quality { azimuths: 8, fuse, ..Quality::default() };
         let plan = plan::picture(&under_sky(flat(9, 14)), &quality, &Limits::lavapipe(), wanted);
         plan.expect("a plan").edit_passes.len()
     };
-    assert!(edits(Fuse::Aimed) > 0);
-    assert_eq!(edits(Fuse::AimedAround), 0);
+    assert!(edits(Fuse::Aimed) > 0 && edits(Fuse::AimedAround) > 0);
+    assert_eq!(edits(Fuse::Slopes), 0);
+}
+
+/// Where the quality leaves it open, horizons and lights of few azimuths look beside the occluders; a sky does not.
+#[test]
+fn lights_of_few_azimuths_have_the_closer_fuse() {
+    let key = KeyLight {
+        azimuth_rad: 1.0,
+        width_rad: 0.1,
+        elevations_rad: [0.2, 0.6],
+        radiance: [1.0; 3],
+    };
+    let mut scene = under_sky(flat(9, 14));
+    scene.lights.keys.push(key);
+    let (limits, wanted) = (Limits::lavapipe(), Picture::default());
+    let fuses = |quality: &Quality| {
+        let lit = plan::picture(&scene, quality, &limits, wanted).expect("a plan");
+        let found = plan::horizons(&scene.field, Border::Plane, quality, &limits, (0, 4), false);
+        let all = [lit.passes, found.expect("a plan").passes].concat();
+        ["sky_shade", "sun_shade", "sweep_fuse"].map(|name| {
+            let pass = all.iter().find(|pass| pass.name() == name).expect("planned");
+            let at = pass.shader.constants.iter().position(|c| c.name == "fuse").expect("a fuse");
+            pass.constants[at]
+        })
+    };
+    let base = Quality { azimuths: 8, ..Quality::default() };
+    let of = |fuse: Fuse| 1 + fuse as u32;
+    let (nearest, around) = (of(Fuse::AimedNearest), of(Fuse::AimedAround));
+    assert_eq!(fuses(&base), [nearest, around, around]);
+    assert_eq!(fuses(&Quality { method: Method::Sweep, ..base }), [nearest; 3]);
+    assert_eq!(fuses(&Quality { fuse: Fuse::Aimed, ..base }), [of(Fuse::Aimed); 3]);
 }
 
 /// One pass a bounce, after the arriving light is resolved; exit radiance in one image used in turn, or in a

@@ -5,9 +5,9 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch::Batch;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
-use crate::passes::sweep::{Sweep, shadows_by_one_line};
+use crate::passes::sweep::{Sweep, leaves_open, shadows_by_one_line};
 use crate::passes::sweeping::Sweeping;
-use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision, Quality};
+use crate::scene::{Border, HeightField, KeyLight, Quality};
 
 /// What the passes of suns share, besides the lattices.
 pub(crate) struct Shadows {
@@ -37,12 +37,8 @@ impl Shadows {
         border: Border,
         (limits, used_bytes): (&Limits, u64),
     ) -> Result<(), Option<String>> {
-        let is_free = quality.method == Method::Auto
-            && quality.lines == Lines::Cell
-            && quality.fuse == Fuse::AimedNearest
-            && quality.precision == Precision::F32;
         let size = [field.cols() as u32, field.rows() as u32];
-        if !is_free || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
+        if !leaves_open(quality) || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
             return Err(None);
         }
         let maxima = BlockLevels::of(size, border).maxima_size();

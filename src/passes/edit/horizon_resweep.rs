@@ -1,6 +1,7 @@
 use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::LineSweep;
+use crate::scene::Fuse;
 
 /// What the sweep of an edit reads and writes.
 pub(crate) struct Images {
@@ -11,6 +12,9 @@ pub(crate) struct Images {
     pub list: ResourceId,
 }
 
+/// Grid points around an occluder on which fuse `aimed-around` may look.
+const AROUND: u32 = 2;
+
 /// Sweeps the lines of a batch that an edited rectangle can reach.
 pub(crate) fn plan(
     builder: &mut Builder,
@@ -20,6 +24,7 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
+    let looks_around = sweep.fuse == Fuse::AimedAround;
     let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
         shaders::HorizonResweep {
@@ -51,5 +56,5 @@ pub(crate) fn plan(
         batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
-    pass.reach = Some(Reach::Lines(axis, sweep.line_shift));
+    pass.reach = Some(Reach::Lines(axis, sweep.line_shift, if looks_around { AROUND } else { 0 }));
 }

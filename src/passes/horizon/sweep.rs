@@ -55,6 +55,8 @@ pub(crate) struct LineSweep {
     pub writes_occluders: bool,
     /// How results of lines come back to grid points.
     pub fuse: Fuse,
+    /// The same for horizons, suns and key lights, of which a few azimuths decide alone.
+    pub fuse_of_few: Fuse,
     /// Azimuths that are swept together at most.
     pub azimuths: u32,
     /// Whether the lattice has room for the azimuth with the most lines, so that a light that turns keeps its size.
@@ -158,6 +160,14 @@ const GPU_PRIVATE_ENTRIES: u32 = 1024;
 // A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
+
+/// Whether a quality leaves the choice of exact shadows and of the fuse to the planner.
+pub(crate) fn leaves_open(quality: &Quality) -> bool {
+    quality.method == Method::Auto
+        && quality.lines == Lines::Cell
+        && quality.fuse == Fuse::AimedNearest
+        && quality.precision == Precision::F32
+}
 
 /// Whether the heights of a field fit a buffer, from which an invocation sweeps one line.
 pub(crate) fn fit_buffer(sides: [u32; 2], limits: &Limits) -> bool {
@@ -404,6 +414,7 @@ impl Sweep {
             slope_format,
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
+            fuse_of_few: if leaves_open(quality) { Fuse::AimedAround } else { quality.fuse },
             azimuths: form.azimuths,
             any_azimuth: false,
         }))
@@ -429,6 +440,7 @@ impl Sweep {
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,
+            fuse_of_few: Fuse::Nearest,
             azimuths: u32::MAX,
             any_azimuth: true,
         })
@@ -465,8 +477,6 @@ impl Sweep {
     /// The sweep, where an edit can continue from its occluders: they are stored, and lines begin at an edge.
     pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
         match self {
-            // Texels that this fuse searches around an occluder are not marked.
-            Sweep::Lines(l) if l.fuse == Fuse::AimedAround => None,
             Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
             _ => None,
         }
@@ -475,6 +485,14 @@ impl Sweep {
     /// Whether the first crossings of a grid point's own line are among its candidates.
     pub(crate) fn sees_own_crossings(&self) -> bool {
         matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
+    }
+
+    /// For horizons, suns and key lights alone.
+    pub(crate) fn of_few(mut self) -> Self {
+        if let Sweep::Lines(lines) = &mut self {
+            lines.fuse = lines.fuse_of_few;
+        }
+        self
     }
 
     /// The shaders' FUSE.
@@ -508,8 +526,8 @@ impl Sweep {
                 Fuse::Slopes => 8,
                 Fuse::AimedNearest => 2 + 8,
                 Fuse::Own | Fuse::Aimed => 4 + 16,
-                // Six heights of each of four segments per line.
-                Fuse::AimedAround => 4 + 2 * 4 * 24,
+                // And six heights of each of three segments.
+                Fuse::AimedAround => 4 + 16 + 3 * 24,
             },
             Sweep::Crossings => 0,
             _ => 4,

@@ -85,14 +85,16 @@ impl Sweeping {
         self.shadows.contains(&batch.number)
     }
 
-    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
-    pub(crate) fn plan_edit<'a>(
+    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change. The first batches are
+    /// of the circle.
+    pub(crate) fn plan_edit(
         &self,
         builder: &mut Builder,
         border: Border,
-        batches: impl Iterator<Item = &'a Batch> + Clone,
+        [circle, few]: [&[Batch]; 2],
         [dirty, list]: [ResourceId; 2],
     ) {
+        let batches = circle.iter().chain(few);
         for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
             let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
             if let (Some(axis), Some(lanes)) = (axis, lanes) {
@@ -100,8 +102,10 @@ impl Sweeping {
                 passes::height_transpose::plan(builder, axis, border, self.heights, lanes, buffer);
             }
         }
-        let Some(sweep) = self.sweep.editable(border) else { return };
-        for batch in batches.filter(|batch| !self.is_shadow(batch)) {
+        let few =
+            few.iter().filter(|batch| !self.is_shadow(batch)).map(|b| (b, self.sweep.of_few()));
+        for (batch, sweep) in circle.iter().map(|b| (b, self.sweep)).chain(few) {
+            let Some(sweep) = sweep.editable(border) else { return };
             let images = passes::horizon_resweep::Images {
                 heights: self.heights,
                 azimuths: self.azimuths,
@@ -376,11 +380,7 @@ pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Result<Vec<f64>> {
 }
 
 /// The settings in use, for metadata and messages.
-pub(crate) fn settings(
-    quality: &Quality,
-    sweep: Option<&Sweep>,
-    border: Border,
-) -> Vec<(String, String)> {
+pub(crate) fn settings(sweep: Option<&Sweep>, border: Border) -> Vec<(String, String)> {
     let mut all = vec![("border".to_owned(), format!("{border:?}").to_lowercase())];
     let mut add = |name: &str, value: String| all.push((name.to_owned(), value));
     let Some(sweep) = sweep else { return all };
@@ -388,7 +388,7 @@ pub(crate) fn settings(
         Sweep::Lines(lines) => {
             add("method", "sweep".into());
             add("lines", lines.spacing().name().into());
-            add("fuse", quality.fuse.name().into());
+            add("fuse", lines.fuse.name().into());
             add("hull", lines.hull.name().into());
             add("hull_depth", lines.hull_depth.to_string());
             if lines.private_depth > 0 && lines.hull == HullStorage::Shared {

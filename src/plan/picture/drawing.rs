@@ -3,6 +3,7 @@
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
+use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, WalkedOver, bounce_name};
 use crate::passes::edits::Edits;
@@ -87,12 +88,13 @@ impl Drawing<'_> {
         let (border, ids) = (self.border(), [dirty, list]);
         self.edited = Some(ids);
         let Some(sweeping) = &self.sweeping else { return };
-        let batches = lists.batches.iter().flatten();
-        let has_others = batches.clone().any(|batch| !sweeping.is_shadow(batch));
+        let (circle, few) = lists.batches.split_at(usize::from(self.images.need_circle()));
+        let [circle, few] = [circle, few].map(<[Vec<Batch>]>::concat);
+        let has_others = circle.iter().chain(&few).any(|batch| !sweeping.is_shadow(batch));
         if has_others {
             passes::dirty_mark::plan(&mut self.builder, size, ids);
         }
-        sweeping.plan_edit(&mut self.builder, border, batches, ids);
+        sweeping.plan_edit(&mut self.builder, border, [&circle, &few], ids);
         if has_others {
             passes::dirty_list::plan(&mut self.builder, size, ids);
         }
@@ -238,9 +240,9 @@ impl Drawing<'_> {
                 }
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);
-                let sweep = &sweeping.sweep;
+                let sweep = sweeping.sweep.of_few();
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
+                    builder, &sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
                     resolves,
                 );
             }

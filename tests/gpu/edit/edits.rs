@@ -157,6 +157,12 @@ fn edits_give_the_bits_of_all() {
         (plateaus(61, 50), open, Quality { fuse: Fuse::Own, lines: Lines::HalfCell, ..base }),
         (rough(50, 83, [1.0, 3.0]), open, Quality { lines: Lines::TwoCells, ..base }),
         (rough(33, 9, [2.0, 2.0]), plane, Quality { precision: Precision::Packed, ..base }),
+        (rough(61, 47, [2.0, 1.0]), open, Quality { fuse: Fuse::AimedAround, ..base }),
+        (
+            plateaus(50, 64),
+            plane,
+            Quality { fuse: Fuse::AimedAround, lines: Lines::TwoCells, ..base },
+        ),
     ];
     let asked = std::env::var("RIDGELIGHT_EDITS").ok();
     let count = asked.map_or(8, |n| n.parse().expect("RIDGELIGHT_EDITS is a whole number"));

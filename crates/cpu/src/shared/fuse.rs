@@ -132,12 +132,17 @@ pub fn fused(swept: &Swept, march: &March, (lane, step): (i32, i32)) -> Found {
         back => surface_at(march, y, back, step, own),
     };
 
-    // Ridges that unit steps miss stand beside a proposal.
-    let around = |texel: Option<usize>| {
+    // Ridges that unit steps miss stand beside the nearer line's proposal: a step to either side, and one more towards
+    // the other line's.
+    let around = || {
+        let [before, after] = [before_texel, after_texel].map(|t| i32::from(back(t)));
+        let (nearer, other) = if takes_after { (after, before) } else { (before, after) };
+        let at = if nearer > 0 { nearer } else { other };
+        let towards = if other > 0 { (other - at).signum() } else { 0 };
         let mut best = NOTHING;
-        let back = i32::from(back(texel));
-        if back > 0 {
-            for back in (back - 1).max(1)..=(back + 2).min(step + warm_up) {
+        if at > 0 {
+            let first = (at + towards.min(0)).max(1);
+            for back in first..=(at + 1 + towards.max(0)).min(step + warm_up) {
                 met_within(march, (lane, step), back, true, &mut best);
             }
         }
@@ -151,9 +156,7 @@ pub fn fused(swept: &Swept, march: &March, (lane, step): (i32, i32)) -> Found {
         Fuse::Nearest => return slope(nearest),
         Fuse::AimedNearest => return higher(first(), aimed(nearest)),
         Fuse::Aimed => return both_aimed(),
-        Fuse::AimedAround => {
-            return higher(higher(both_aimed(), around(before_texel)), around(after_texel));
-        }
+        Fuse::AimedAround => return higher(both_aimed(), around()),
         Fuse::Own => (
             surface_at(march, after, back(after_texel), step, own),
             surface_at(march, before, back(before_texel), step, own),
