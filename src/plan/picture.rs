@@ -40,7 +40,7 @@ pub struct Picture {
     /// ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once; with an environment in spherical harmonics
     /// only the suns' lattices, as the harmonics keep the visibility.
     ///
-    /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat, then also accept edits
+    /// Sweeps along lines, with fuse own or an aimed one and a border that does not repeat, then also accept edits
     /// ([`Plan::edit_passes`]), but not with spherical harmonics, bounces, specular, sphere lights or
     /// [`still`](Self::still). Memory: a quarter of a byte per texel.
     pub keeps_horizons: bool,

@@ -7,7 +7,8 @@ words! {
     pub enum Method = Auto {
         /// The planner's choice: a sweep, and exact shadows of suns
         ///
-        /// Suns and key lights up to 5 degrees high have exact shadows where `lines`, `fuse` and `precision` have their defaults.
+        /// Where `lines`, `fuse` and `precision` have their defaults, suns and key lights up to 5 degrees high have exact shadows;
+        /// horizons and taller key lights have fuse aimed-around.
         Auto = "auto",
         /// Hull sweeps along lines
         ///
@@ -66,10 +67,10 @@ words! {
         AimedNearest = "aimed-nearest",
         /// The same for the occluders of both lines; takes the higher
         Aimed = "aimed",
-        /// The same, and every crossing of the texel's own line within two steps of either, for low suns
+        /// The same, and every crossing of the texel's own line beside the nearer line's occluder
         ///
-        /// Crossings with grid lines and diagonals. Finds ridges between steps, which decide the shadows of low suns.
-        /// After the sweep it takes several times the time of [`Aimed`](Self::Aimed). No edits.
+        /// Crossings with grid lines and diagonals, a step to either side and one more towards the other line's occluder. Finds
+        /// ridges between steps. After the sweep it takes three times the time of [`Aimed`](Self::Aimed) (llvmpipe).
         AimedAround = "aimed-around",
     }
 }

@@ -49,7 +49,8 @@ settings! {
         /// Interpolation of the results of lines to texels
         ///
         /// aimed-nearest is as fast as nearest and more exact than nearest, slopes and own (llvmpipe, lines one cell
-        /// apart). aimed and aimed-around are slower and more exact.
+        /// apart). aimed and aimed-around are slower and more exact. With method auto, horizons and key lights take
+        /// aimed-around in place of the default.
         ///
         /// Times and errors, without aimed-around: benches/results/accuracy_N44W072.txt.
         Expert "fuse" fuse: Fuse = Fuse::AimedNearest, Fuse::WORDS;

@@ -75,7 +75,7 @@ fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
 }
 
 /// The default, which is first, and the settings that it is compared with. With border `plane` these are all. The other borders
-/// have those that may be faster, and two more accurate fuses, which show what accuracy costs there.
+/// have those that may be faster, and the other fuses.
 pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };
@@ -91,10 +91,19 @@ pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
             swept("--azimuths 128", Quality { azimuths: 128, ..default }),
         ),
     };
+    // The fuse that the other kinds have by default.
+    let other_fuse = match kind {
+        Kind::Key | Kind::Horizons => {
+            swept("--method sweep", Quality { method: Method::Sweep, ..default })
+        }
+        Kind::Sky | Kind::Environment => {
+            swept("--fuse aimed-around", Quality { fuse: Fuse::AimedAround, ..default })
+        }
+    };
     let mut all = vec![
         swept("default", default),
         swept("--fuse aimed", Quality { fuse: Fuse::Aimed, ..default }),
-        swept("--fuse aimed-around", Quality { fuse: Fuse::AimedAround, ..default }),
+        other_fuse,
         swept("--lines 2", Quality { lines: Lines::TwoCells, ..default }),
         fewer,
     ];
