@@ -80,16 +80,17 @@ pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };
     let slow = |flags, quality| Mode { flags, quality, turns: FEW_TURNS };
-    // A key light has slices of its own in place of azimuths.
-    let (fewer, more) = match kind {
-        Kind::Key => (
-            swept("--sun-azimuths 4", Quality { sun_azimuths: 4, ..default }),
-            swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default }),
-        ),
-        Kind::Sky | Kind::Environment | Kind::Horizons => (
-            swept("--azimuths 32", Quality { azimuths: 32, ..default }),
-            swept("--azimuths 128", Quality { azimuths: 128, ..default }),
-        ),
+    // A key light has slices of its own in place of azimuths. Fewer or more horizons are another output.
+    let [fewer, more] = match kind {
+        Kind::Key => [
+            Some(swept("--sun-azimuths 4", Quality { sun_azimuths: 4, ..default })),
+            Some(swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default })),
+        ],
+        Kind::Sky | Kind::Environment => [
+            Some(swept("--azimuths 32", Quality { azimuths: 32, ..default })),
+            Some(swept("--azimuths 128", Quality { azimuths: 128, ..default })),
+        ],
+        Kind::Horizons => [None, None],
     };
     // The fuse that the other kinds have by default.
     let other_fuse = match kind {
@@ -105,16 +106,16 @@ pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
         swept("--fuse aimed", Quality { fuse: Fuse::Aimed, ..default }),
         other_fuse,
         swept("--lines 2", Quality { lines: Lines::TwoCells, ..default }),
-        fewer,
     ];
+    all.extend(fewer);
     if border != Border::Plane {
         return all;
     }
     all.extend([
         swept("--lines 1/2", Quality { lines: Lines::HalfCell, ..default }),
-        more,
         slow("--method brute-force", Quality { method: Method::BruteForce, ..default }),
     ]);
+    all.extend(more);
     // Slices of a key light follow no grid vectors, so `--lines exact` refuses it.
     if kind != Kind::Key {
         all.push(slow("--lines exact", Quality { lines: Lines::Exact, ..default }));
