@@ -99,7 +99,7 @@ struct Segment {
 Met crossing_of(Azimuth azimuth, Segment segment, vec4 own, vec4 far, vec4 near, vec4 u, bvec4 crosses) {
     bool wraps = BORDER == BORDER_PERIODIC;
     // A line that does not repeat ends at the edge, half a unit of rounding aside.
-    bvec4 is_on = greaterThanEqual(vec4(segment.y) + u * float(azimuth.shear), vec4(wraps ? -1e9 : -0.5));
+    bvec4 is_on = greaterThanEqual(vec4(segment.y) + u * float(azimuth.shear), vec4(wraps ? -4e9 : -0.5));
     bvec4 meets = bvec4(uvec4(segment.exists) & uvec4(crosses) & uvec4(is_on) & uvec4(lessThan(u, vec4(1.0))));
     Met met;
     met.steps = segment.back - u;

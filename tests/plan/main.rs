@@ -13,7 +13,7 @@ mod walks;
 use std::collections::HashSet;
 
 use ridgelight::plan::{
-    self, Kind, Limits, Owner, Pass, Picture, Plan, SweepForm, missing_barriers,
+    self, Kind, Limits, Owner, Pass, Picture, Plan, Reach, SweepForm, missing_barriers,
 };
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
@@ -416,6 +416,17 @@ fn lights_of_few_azimuths_have_the_closer_fuse() {
     assert_eq!(fuses(&base), [nearest, around, around]);
     assert_eq!(fuses(&Quality { method: Method::Sweep, ..base }), [nearest; 3]);
     assert_eq!(fuses(&Quality { fuse: Fuse::Aimed, ..base }), [of(Fuse::Aimed); 3]);
+
+    // Edits look as far around as the fuse of their lights.
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let edited = plan::picture(&scene, &base, &limits, wanted).expect("a plan");
+    let around = |pass: &Pass| match pass.reach {
+        Some(Reach::Lines(_, _, around)) => Some((around, pass.azimuths.start >= 8)),
+        _ => None,
+    };
+    let reached: HashSet<_> = edited.edit_passes.iter().filter_map(around).collect();
+    assert_eq!(reached, HashSet::from([(0, false), (2, true)]));
+    assert!(edited.notes.iter().any(|note| note.contains("aimed-around")));
 }
 
 /// One pass a bounce, after the arriving light is resolved; exit radiance in one image used in turn, or in a

@@ -1,11 +1,14 @@
 //! `horizon_resweep` against a sweep of everything.
 
+use crate::horizon::fuse::texels;
 use crate::horizon::*;
 use proptest::prelude::*;
 use ridgelight::plan::Rectangle;
 use ridgelight::plan::azimuths::even;
-use ridgelight_cpu::dirty_mark::dirty_mark;
+use ridgelight::scene::Fuse;
+use ridgelight_cpu::dirty_mark::{dirty_mark, place};
 use ridgelight_cpu::horizon_resweep::horizon_resweep;
+use ridgelight_cpu::shared::gather::Swept;
 
 /// Heights of a field with a changed rectangle; a new field would have another base.
 fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> Vec<f32> {
@@ -67,6 +70,64 @@ proptest! {
         let options = SweepOptions { line_shift, packed, ..SweepOptions::default() };
         resweep(&before, &after, rectangle, options).map_err(TestCaseError::fail)?;
     }
+}
+
+/// A rectangle with this many grid points more on every side, as far as the field goes.
+fn grown(rectangle: Rectangle, by: u32, field: &HeightField) -> Rectangle {
+    let along = |first: u32, count: u32, all: usize| {
+        let start = first.saturating_sub(by);
+        (start, (first + count + by).min(all as u32) - start)
+    };
+    let (col, cols) = along(rectangle.col, rectangle.cols, field.cols());
+    let (row, rows) = along(rectangle.row, rectangle.rows, field.rows());
+    Rectangle { col, row, cols, rows }
+}
+
+/// Horizons by `aimed-around` that an edit changes at grid points which it does not mark, where the rectangle of the sweep
+/// has `by` grid points more on every side.
+fn unmarked(by: u32, border: Border, line_shift: u32) -> usize {
+    let mut count = 0;
+    for seed in 0..12 {
+        let before = field(27, 31, [2.0, 3.0], |r, c| 9.0 * noise(seed, r, c));
+        let rectangle = Rectangle { col: 12, row: 11, cols: 3, rows: 2 };
+        let after = edited(&before, rectangle, if seed % 2 == 0 { 6.0 } else { -3.0 });
+        let options = SweepOptions { line_shift, ..SweepOptions::default() };
+        let mut azimuths = even(24, before.cell_m());
+        let old = swept(&before, border, &mut azimuths, [0; 2], options);
+        let mut new = old.clone();
+        let heights = Heights { heights_m: &after, ..Heights::of(&before, border) };
+        let mut dirty = dirty_mark([before.cols(), before.rows()], rectangle);
+        let wide = grown(rectangle, by, &before);
+        for azimuth in &azimuths {
+            horizon_resweep(heights, azimuth, &options, wide, new.of_mut(azimuth), &mut dirty);
+        }
+        let found = |heights, lattices, azimuth, (col, row)| {
+            let fuse = Some(Fuse::AimedAround);
+            let azimuths = &azimuths;
+            Swept { heights, azimuths, lattices, fuse, line_shift, warm_up: [0; 2] }
+                .found(azimuth, col, row)
+        };
+        for (azimuth, at) in azimuths.iter().flat_map(|a| texels(&before).map(move |t| (a, t))) {
+            let (word, bit) = place([at.0 as usize, at.1 as usize], before.cols());
+            let of_old = found(Heights::of(&before, border), &old, azimuth, at);
+            let of_new = found(heights, &new, azimuth, at);
+            count += usize::from(dirty[word] & bit == 0 && of_old != of_new);
+        }
+    }
+    count
+}
+
+/// `aimed-around` looks up to two steps beyond an occluder. With a rectangle that is wider by two grid points, as plans have
+/// it, every horizon that changes is marked; one point is too few.
+#[test]
+fn edits_mark_what_looks_beside_occluders() {
+    for border in [Border::Plane, Border::Open] {
+        for line_shift in [14, 15, 16, 17] {
+            assert_eq!(unmarked(2, border, line_shift), 0, "{border:?} {line_shift}");
+        }
+    }
+    assert!(unmarked(1, Border::Plane, 15) > 0, "one more grid point is enough");
+    assert!(unmarked(0, Border::Plane, 15) > unmarked(1, Border::Plane, 15));
 }
 
 /// On a dome every texel stays on the hull: an edit stays visible until the dome hides it.

@@ -43,7 +43,7 @@ fn each_mode(
     }
 }
 
-fn texels(field: &HeightField) -> impl Iterator<Item = (i32, i32)> {
+pub(crate) fn texels(field: &HeightField) -> impl Iterator<Item = (i32, i32)> {
     let cols = field.cols();
     (0..field.rows() * cols).map(move |i| ((i % cols) as i32, (i / cols) as i32))
 }

@@ -1,7 +1,7 @@
 //! CPU references of the passes that find horizons, against the oracle and closed forms.
 
 mod azimuths;
-mod fuse;
+pub(crate) mod fuse;
 mod march;
 mod oracle;
 mod surface;

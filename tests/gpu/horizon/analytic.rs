@@ -34,7 +34,8 @@ fn a_ramp_has_its_slope_in_every_azimuth() {
             (Lines::Cell, Fuse::Slopes),
             (Lines::TwoCells, Fuse::Aimed),
         ] {
-            let quality = Quality { azimuths: 24, lines, fuse, ..Quality::default() };
+            let quality =
+                Quality { azimuths: 24, method: Method::Sweep, lines, fuse, ..Quality::default() };
             let found = gpu.horizons(&ramp, Border::Plane, &quality);
             for k in 0..24 {
                 let phi = std::f64::consts::TAU * f64::from(k) / 24.0;

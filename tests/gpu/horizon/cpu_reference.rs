@@ -53,6 +53,13 @@ pub(crate) fn sweeps() -> Vec<Case> {
     let shared_slopes = Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base };
     vec![
         horizons("private f32", rough(37, 23, 1), Border::Plane, base, true),
+        horizons(
+            "aimed-nearest, lines that follow lanes",
+            rough(23, 37, 9),
+            Border::Open,
+            Quality { method: Method::Sweep, ..base },
+            true,
+        ),
         Case {
             loses_lines: true,
             ..horizons("shared f32", dome(13, 97), Border::Plane, shared_slopes, false)

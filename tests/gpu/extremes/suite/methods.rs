@@ -41,7 +41,7 @@ pub fn all() -> Vec<Method> {
     [
         ("brute", Quality { method: scene::Method::BruteForce, ..base }),
         ("exact", Quality { lines: Lines::Exact, ..base }),
-        ("auto: 1, aimed-nearest", base),
+        ("auto", base),
         ("1, aimed", Quality { method: scene::Method::Sweep, ..fused(Fuse::Aimed) }),
         ("1, own, list", Quality { hull: Hull::OccluderList, ..fused(Fuse::Own) }),
         ("1, slopes, shared", Quality { hull: Hull::Shared, ..fused(Fuse::Slopes) }),

@@ -249,6 +249,16 @@ fn suns() -> Result<String> {
     Ok(format!("{}\n\n*{device}{made}*\n", rows.join("\n")))
 }
 
+/// What the default reaches, as `cargo measure defaults` printed it last.
+fn defaults() -> Result<String> {
+    let (body, made) = result("defaults.txt")?;
+    let table = body.split("\n\n").find(|part| part.starts_with("| light | ground |"));
+    let table = found("defaults.txt", table, "the summary of cargo measure defaults")?;
+    let device = body.lines().next().and_then(|line| line.split_once(": "));
+    let (device, _) = found("defaults.txt", device, "a device in its first line")?;
+    Ok(format!("{}\n\n*{device}{made}*\n", table.trim_end()))
+}
+
 /// Errors of Fourier series of horizons, as `cargo measure fourier` printed it.
 fn fourier() -> Result<String> {
     let (body, made) = result("fourier.txt")?;
@@ -424,7 +434,10 @@ const PAGES: [(&str, &[Section]); 9] = [
     ("docs/embedding.md", &[("package", package), ("hosts", hosts), ("edits", edits)]),
     ("docs/embedding/bevy.md", &[("fourier", fourier)]),
     ("docs/methods.md", &[("forms", forms)]),
-    ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
+    (
+        "docs/accuracy.md",
+        &[("accuracy", accuracy), ("defaults", defaults), ("suns", suns), ("bounces", bounces)],
+    ),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
     ("docs/measured/performance.md", &[("performance", performance::performance)]),
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),

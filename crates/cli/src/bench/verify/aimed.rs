@@ -332,8 +332,11 @@ mod tests {
     /// Only shadow heights are exact, and only aimed modes of f32 sweeps return points of the surface.
     #[test]
     fn horizons_are_as_the_method_finds_them() {
-        let [by_heights, by_sweeps] =
-            [true, false].map(|is_exact| Shaded { shape: Shape::Disc, is_exact });
+        let [by_heights, by_sweeps] = [true, false].map(|is_exact| Shaded {
+            shape: Shape::Disc,
+            is_exact,
+            fuse: Fuse::Aimed,
+        });
         let base = Quality::default();
         assert_eq!(horizons(&base, by_heights), Horizons::Exact);
         assert_eq!(horizons(&base, by_sweeps), Horizons::NeverAbove);

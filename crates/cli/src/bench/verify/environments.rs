@@ -49,7 +49,7 @@ fn wanted_of(
     let azimuths = plan.azimuths[..quality.azimuths as usize].to_vec();
     let nodes = quality.table_elevations as usize;
     let (cols, border) = (scene.field.cols(), scene.surface.border);
-    let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
+    let all = lit(scene, azimuths, quality.fuse, line_shift, |swept, error| {
         let rows = env_wedges(environment, border, swept.azimuths);
         let wedges = (environment.height(), swept.azimuths);
         let tables = env_tables(&rows, wedges, nodes, bottom_sine(border));

@@ -65,7 +65,7 @@ pub(super) fn followed(scene: &Scene, quality: &Quality) -> Option<u32> {
 fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -> Wanted {
     let azimuths = even(quality.azimuths, scene.field.cell_m());
     let cols = scene.field.cols();
-    lit(scene, azimuths, quality, line_shift, |swept, error| {
+    lit(scene, azimuths, quality.fuse, line_shift, |swept, error| {
         let at = |p: &usize| sky_at(swept, (p % cols) as i32, (p / cols) as i32);
         let both = |p| [at(p), error.sky()].map(DVec3::splat);
         Wanted(places.iter().map(both).collect())
@@ -76,7 +76,7 @@ fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -
 pub(super) fn lit<T>(
     scene: &Scene,
     azimuths: Vec<Azimuth>,
-    quality: &Quality,
+    fuse: Fuse,
     line_shift: u32,
     light: impl FnOnce(&Swept, &ShadeError) -> T,
 ) -> T {
@@ -84,7 +84,7 @@ pub(super) fn lit<T>(
         let options = SweepOptions { line_shift, warm_up, ..SweepOptions::default() };
         horizon_sweep(heights, azimuth, &options, lattice);
     };
-    lit_by(scene, azimuths, (Some(quality.fuse), line_shift), sweep, light)
+    lit_by(scene, azimuths, (Some(fuse), line_shift), sweep, light)
 }
 
 /// Light from exact horizons at some texels, and its tolerance.
@@ -167,7 +167,7 @@ pub(super) fn check_aimed(
         let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(plan, light));
         let Some((azimuths, shaded)) = of else { continue };
         checked += 1;
-        let wanted = aimed(scene, azimuths, places, quality, lines, shaded);
+        let wanted = aimed(scene, azimuths, places, lines, shaded);
         for (got, wanted) in colours(layer, places).into_iter().zip(wanted) {
             let Some([light, bound]) = wanted else { continue };
             found.push(got);
@@ -212,7 +212,13 @@ pub(super) struct Shaded {
     pub shape: Shape,
     /// By shadow heights, which give the light of exact horizons.
     pub is_exact: bool,
+    /// Of its sweep.
+    pub fuse: Fuse,
 }
+
+/// In the order of the shaders' numbers.
+const FUSES: [Fuse; 6] =
+    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 
 /// Passes that light a sun or a key light.
 const AIMED_PASSES: [&str; 2] = ["sun_shade", "shadow_shade"];
@@ -236,7 +242,10 @@ pub(super) fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Sha
     let shape = [Shape::Disc, Shape::Point, Shape::Patch][first.constant("shape")? as usize];
     let ranges = passes.iter().map(|p| p.azimuths.start as usize..p.azimuths.end as usize);
     let azimuths = ranges.flat_map(|range| plan.azimuths[range].iter().copied()).collect();
-    Some((azimuths, Shaded { shape, is_exact }))
+    // FUSE of the shaders; 0 and 7 are no sweeps along lines.
+    let mode = first.constant("fuse").unwrap_or_default() as usize;
+    let fuse = mode.checked_sub(1).and_then(|mode| FUSES.get(mode).copied()).unwrap_or_default();
+    Some((azimuths, Shaded { shape, is_exact, fuse }))
 }
 
 /// A sun's light of the CPU reference at each place and its tolerance, none where a point sun may be
@@ -245,9 +254,8 @@ fn aimed(
     scene: &Scene,
     azimuths: Vec<Azimuth>,
     places: &[usize],
-    quality: &Quality,
     line_shift: u32,
-    Shaded { shape, is_exact }: Shaded,
+    Shaded { shape, is_exact, fuse }: Shaded,
 ) -> Vec<Option<[DVec3; 2]>> {
     let cols = scene.field.cols();
     let light = |swept: &Swept, error: &ShadeError| {
@@ -267,7 +275,7 @@ fn aimed(
     if is_exact {
         exactly_lit(scene, azimuths, places, light)
     } else {
-        lit(scene, azimuths, quality, line_shift, light)
+        lit(scene, azimuths, fuse, line_shift, light)
     }
 }
 
@@ -311,7 +319,7 @@ mod tests {
             let wanted = Picture { light_layers: true, ..Picture::default() };
             let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
             let (azimuths, shaded) = azimuths_of(&plan, "sun1").expect("a sun");
-            let all = aimed(&scene, azimuths, &places(), &quality, shift, shaded);
+            let all = aimed(&scene, azimuths, &places(), shift, shaded);
             Wanted(all.into_iter().map(|both| both.expect("no point")).collect())
         };
         let wrong = [

@@ -43,7 +43,7 @@ pub(super) fn check(
     let is_swept = plan.passes.iter().any(|pass| pass.name() == "horizon_sweep");
     let lines = followed(scene, quality).filter(|_| is_swept);
     if let Some(lines) = lines {
-        let wanted = wanted(scene, &keys, places, (quality, lines));
+        let wanted = wanted(scene, &keys, places, lines);
         let errors = wanted.judge("specular of key lights at one place", &found, quality)?;
         texts.push(sentence("key specular", "the CPU reference", errors));
     }
@@ -222,16 +222,11 @@ fn bound_of(all: &[Reflected], of_sky: f64) -> f64 {
 }
 
 /// Specular light of the CPU reference, by the same sweeps.
-fn wanted(
-    scene: &Scene,
-    keys: &[Key],
-    places: &[usize],
-    (quality, lines): (&Quality, u32),
-) -> Wanted {
+fn wanted(scene: &Scene, keys: &[Key], places: &[usize], lines: u32) -> Wanted {
     let (specular, cols) = (specular_of(scene), scene.field.cols());
     let mut all = vec![[DVec3::ZERO; 2]; places.len()];
-    for Key { radiance, azimuths, .. } in keys {
-        let of_key = lit(scene, azimuths.clone(), quality, lines, |swept, error| {
+    for Key { radiance, azimuths, shaded } in keys {
+        let of_key = lit(scene, azimuths.clone(), shaded.fuse, lines, |swept, error| {
             let at = |place: &usize| swept_at(swept, error, (*place, cols), specular.at(*place));
             places.iter().map(at).collect::<Vec<_>>()
         });
@@ -317,7 +312,7 @@ mod tests {
         for exponent in [5.0, 20.0] {
             let of = |azimuth_rad: f64, exponent: f32| {
                 let (scene, keys) = lit_by(azimuth_rad, exponent, &quality);
-                wanted(&scene, &keys, &places(), (&quality, lines))
+                wanted(&scene, &keys, &places(), lines)
             };
             let (scene, keys) = lit_by(1.0, exponent, &quality);
             let open = allowed(&scene, &keys, &places(), &quality);
