@@ -111,7 +111,7 @@ Met crossing_of(Azimuth azimuth, Segment segment, vec4 own, vec4 far, vec4 near,
 // Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
 // proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
 // lie there. `reach` steps lie ahead.
-void look_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
+void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
@@ -301,7 +301,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
             ivec4 nearer = ivec4(mix(before_back, after_back, takes_after));
             ivec4 other = ivec4(mix(after_back, before_back, takes_after));
             if (any(lessThan(met.slope, enough))) {
-                look_beside(azimuth, q, nearer, other, at.step, lanes, steps, met);
+                raise_beside(azimuth, q, nearer, other, at.step, lanes, steps, met);
             }
         }
         return met;

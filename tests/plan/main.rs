@@ -388,7 +388,7 @@ fn fuses_that_store_occluders_take_edits() {
     assert_eq!(edits(Fuse::Slopes), 0);
 }
 
-/// Where the quality leaves it open, horizons and lights of few azimuths look beside the occluders; a sky does not.
+/// Where the quality leaves it open, horizons and lights of few azimuths have `aimed-around`; a sky has `aimed-nearest`.
 #[test]
 fn lights_of_few_azimuths_have_the_closer_fuse() {
     let key = KeyLight {

@@ -12,7 +12,7 @@ pub(crate) struct Images {
     pub list: ResourceId,
 }
 
-/// Grid points around an occluder on which fuse `aimed-around` may look.
+/// Grid points around an occluder whose heights fuse `aimed-around` may read.
 const AROUND: u32 = 2;
 
 /// Sweeps the lines of a batch that an edited rectangle can reach.
@@ -24,7 +24,7 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let looks_around = sweep.fuse == Fuse::AimedAround;
+    let around = if sweep.fuse == Fuse::AimedAround { AROUND } else { 0 };
     let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
         shaders::HorizonResweep {
@@ -56,5 +56,5 @@ pub(crate) fn plan(
         batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
-    pass.reach = Some(Reach::Lines(axis, sweep.line_shift, if looks_around { AROUND } else { 0 }));
+    pass.reach = Some(Reach::Lines(axis, sweep.line_shift, around));
 }
