@@ -89,8 +89,8 @@ pub enum Reach {
     Whole,
     /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
     Quads(Axis),
-    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible; the
-    /// rectangle has so many grid points more on every side.
+    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible. The
+    /// last number is of grid points by which the rectangle grows on every side.
     Lines(Axis, u32, u32),
 }
 

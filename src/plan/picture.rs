@@ -40,7 +40,7 @@ pub struct Picture {
     /// ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once; with an environment in spherical harmonics
     /// only the suns' lattices, as the harmonics keep the visibility.
     ///
-    /// Sweeps along lines, with fuse own or an aimed one and a border that does not repeat, then also accept edits
+    /// Sweeps along lines, with fuse own, aimed-nearest, aimed or aimed-around and a border that does not repeat, then also accept edits
     /// ([`Plan::edit_passes`]), but not with spherical harmonics, bounces, specular, sphere lights or
     /// [`still`](Self::still). Memory: a quarter of a byte per texel.
     pub keeps_horizons: bool,
@@ -187,10 +187,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if !images.need_circle() {
         sweep = sweep.of_few();
     } else if sweep != sweep.of_few() && active.aimed().count() > of_lights.len() {
-        notes.push(
-            "`fuse aimed-around` for lights of few azimuths: suns and key lights without shadow heights"
-                .into(),
-        );
+        notes.push("suns and key lights without shadow heights: `fuse aimed-around`".into());
     }
     let first_aimed = usize::from(images.need_circle());
     held.shadows.extend(of_lights.iter().map(|i| first_aimed + i));

@@ -49,8 +49,8 @@ settings! {
         /// Interpolation of the results of lines to texels
         ///
         /// aimed-nearest is as fast as nearest and more exact than nearest, slopes and own (llvmpipe, lines one cell
-        /// apart). aimed and aimed-around are slower and more exact. With method auto, horizons and key lights take
-        /// aimed-around in place of the default.
+        /// apart). aimed and aimed-around are slower and more exact. With method auto and the defaults of lines,
+        /// fuse and precision, horizons and key lights without exact shadows use aimed-around.
         ///
         /// Times and errors, without aimed-around: benches/results/accuracy_N44W072.txt.
         Expert "fuse" fuse: Fuse = Fuse::AimedNearest, Fuse::WORDS;

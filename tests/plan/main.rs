@@ -375,7 +375,7 @@ fn key_lights() {
     assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
 }
 
-/// Edits continue from occluders; a fuse that reads slopes stores none.
+/// Edits continue from occluders; a sweep whose fuse reads slopes stores none.
 #[test]
 fn fuses_that_store_occluders_take_edits() {
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
@@ -417,7 +417,7 @@ fn lights_of_few_azimuths_have_the_closer_fuse() {
     assert_eq!(fuses(&Quality { method: Method::Sweep, ..base }), [nearest; 3]);
     assert_eq!(fuses(&Quality { fuse: Fuse::Aimed, ..base }), [of(Fuse::Aimed); 3]);
 
-    // Edits look as far around as the fuse of their lights.
+    // Edits grow by what the fuse of each light reads.
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let edited = plan::picture(&scene, &base, &limits, wanted).expect("a plan");
     let around = |pass: &Pass| match pass.reach {

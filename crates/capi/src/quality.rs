@@ -22,8 +22,8 @@ pub struct RidgelightQuality {
     /// How the results of lines are interpolated to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest
     /// (default), 5 aimed, 6 aimed-around. aimed-nearest is as fast as nearest and more exact than the first three
     /// (measured on llvmpipe, lines one cell apart).
-    /// aimed and aimed-around are slower and more exact. With method auto, horizons and key lights take
-    /// aimed-around in place of the default.
+    /// aimed and aimed-around are slower and more exact. With method auto and the defaults of lines,
+    /// fuse and precision, horizons and key lights without exact shadows use aimed-around.
     pub fuse: u32,
     /// Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
     /// beforehand.)

@@ -104,7 +104,9 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         (_, Some("brute-force"), _) => "with --method brute-force".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),
-        ("fuse", ..) => "with --method auto, which chooses one for lights of few azimuths".into(),
+        ("fuse", ..) => {
+            "with --method auto, which uses aimed-around for horizons, suns and key lights".into()
+        }
         ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),
         _ => "with --border periodic: they do not divide this field".into(),
     }

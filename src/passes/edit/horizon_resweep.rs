@@ -12,7 +12,7 @@ pub(crate) struct Images {
     pub list: ResourceId,
 }
 
-/// Grid points around an occluder whose heights fuse `aimed-around` may read.
+/// Distance from an occluder, in grid points, within which fuse `aimed-around` reads heights.
 const AROUND: u32 = 2;
 
 /// Sweeps the lines of a batch that an edited rectangle can reach.

@@ -55,7 +55,7 @@ pub(crate) struct LineSweep {
     pub writes_occluders: bool,
     /// How results of lines come back to grid points.
     pub fuse: Fuse,
-    /// The same for horizons, suns and key lights, of which a few azimuths decide alone.
+    /// For horizons, suns and key lights: few azimuths, so that the error of each one matters.
     pub fuse_of_few: Fuse,
     /// Azimuths that are swept together at most.
     pub azimuths: u32,
@@ -526,7 +526,7 @@ impl Sweep {
                 Fuse::Slopes => 8,
                 Fuse::AimedNearest => 2 + 8,
                 Fuse::Own | Fuse::Aimed => 4 + 16,
-                // And six heights of each of three segments.
+                // As `Aimed`, and six heights of each of three segments.
                 Fuse::AimedAround => 4 + 16 + 3 * 24,
             },
             Sweep::Crossings => 0,

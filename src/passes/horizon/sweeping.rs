@@ -85,8 +85,8 @@ impl Sweeping {
         self.shadows.contains(&batch.number)
     }
 
-    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change. The first batches are
-    /// of the circle.
+    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change. `circle` has the
+    /// batches of the sky and the environment, `few` those of suns and key lights.
     pub(crate) fn plan_edit(
         &self,
         builder: &mut Builder,

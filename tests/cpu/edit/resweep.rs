@@ -119,8 +119,8 @@ fn unmarked(by: u32, border: Border, line_shift: u32) -> usize {
     count
 }
 
-/// `aimed-around` reads heights up to two steps beyond an occluder. With a rectangle that is wider by two grid points, as plans have
-/// it, every horizon that changes is marked; one point is too few.
+/// `aimed-around` reads heights up to two steps beyond an occluder. With a rectangle grown by two grid points on every side, as in
+/// plans, every horizon that changes is marked; one point is too few.
 #[test]
 fn edits_mark_what_reads_beside_occluders() {
     for border in [Border::Plane, Border::Open] {

@@ -242,7 +242,7 @@ pub(super) fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Sha
     let shape = [Shape::Disc, Shape::Point, Shape::Patch][first.constant("shape")? as usize];
     let ranges = passes.iter().map(|p| p.azimuths.start as usize..p.azimuths.end as usize);
     let azimuths = ranges.flat_map(|range| plan.azimuths[range].iter().copied()).collect();
-    // FUSE of the shaders; 0 and 7 are no sweeps along lines.
+    // FUSE of the shaders; 0 and 7 mean that there is no sweep along lines.
     let mode = first.constant("fuse").unwrap_or_default() as usize;
     let fuse = mode.checked_sub(1).and_then(|mode| FUSES.get(mode).copied()).unwrap_or_default();
     Some((azimuths, Shaded { shape, is_exact, fuse }))
