@@ -110,7 +110,7 @@ Met crossing_of(Azimuth azimuth, Segment segment, vec4 own, vec4 far, vec4 near,
 
 // Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
 // proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
-// lie there. `reach` steps lie ahead.
+// lie there. `reach` steps lie ahead. The crossings are those of look_around, for four grid points at once: change both.
 void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
@@ -125,10 +125,10 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
     ivec4 towards = mix(ivec4(0), sign(other - at), greaterThan(other, ivec4(0)));
     ivec4 first = max(at + min(towards, 0), 1);
     ivec4 last = mix(ivec4(0), min(at + 1 + max(towards, 0), reach), greaterThan(at, ivec4(0)));
-    // Lines along lanes have no end across them.
+    // With shear 0 a line stays in its lane and leaves no side of the field.
     int edge = wraps || azimuth.shear == 0 ? -0x7fffffff : 0;
 
-    // Heights of four lanes, from the one before the line's cell on: a column of the matrix for each lane.
+    // near[i][k]: the height of lane near_cell[k] - 1 + i, for grid point k.
     ivec4 y = lane * CELL - (first - 1) * azimuth.shear;
     ivec4 near_cell = y >> CELL_SHIFT;
     mat4 near;
@@ -136,6 +136,7 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
         near[k] = row_at(azimuth, near_cell[k] - 1, step - first[k] + 1, lanes, steps);
     }
     near = transpose(near);
+    // Two steps beside the proposal, and one more towards the other line's.
     for (int i = 0; i < 3; i++) {
         ivec4 back = first + i;
         bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(y, ivec4(edge))));
@@ -237,10 +238,10 @@ Around lines_around(Azimuth azimuth, Place at) {
 Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    int step = march_position(azimuth, q.march, steps);
-    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
     Met met;
     if (FUSE == FUSE_DIRECT) {
+        int step = march_position(azimuth, q.march, steps);
+        ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
         for (int k = 0; k < 4; k++) {
             ivec3 texel = ivec3(clamp(lane[k], 0, lanes - 1), step, azimuth.layer);
             if (LATTICE_STRIDE > 1) {
@@ -297,7 +298,8 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         met = higher(met, surface_at(azimuth, q, y, before_far, lanes, steps));
         met = higher(met, surface_at(azimuth, q, y, after_far, lanes, steps));
         if (FUSE == FUSE_AIMED_AROUND) {
-            bvec4 takes_after = bvec4(uvec4(lines.has_after) & (uvec4(greaterThan(offset, ivec4(spacing / 2))) | uvec4(not(lines.has_before))));
+            bvec4 is_past_half = greaterThan(offset, ivec4(spacing / 2));
+            bvec4 takes_after = bvec4(uvec4(lines.has_after) & (uvec4(is_past_half) | uvec4(not(lines.has_before))));
             ivec4 nearer = ivec4(mix(before_back, after_back, takes_after));
             ivec4 other = ivec4(mix(after_back, before_back, takes_after));
             if (any(lessThan(met.slope, enough))) {

@@ -64,7 +64,7 @@ impl Rectangle {
     fn grown(self, by: u32, [cols, rows]: [u32; 2]) -> Self {
         let along = |first: u32, count: u32, all: u32| {
             let start = first.saturating_sub(by);
-            (start, (first + count).saturating_add(by).min(all) - start)
+            (start, (first + count + by).min(all) - start)
         };
         let (col, cols) = along(self.col, self.cols, cols);
         let (row, rows) = along(self.row, self.rows, rows);
@@ -89,9 +89,15 @@ pub enum Reach {
     Whole,
     /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
     Quads(Axis),
-    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible. The
-    /// last number is of grid points by which the rectangle grows on every side.
-    Lines(Axis, u32, u32),
+    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible.
+    Lines {
+        /// Of the march.
+        axis: Axis,
+        /// Of the spacing.
+        line_shift: u32,
+        /// Grid points added to every side of the rectangle.
+        margin: u32,
+    },
 }
 
 /// Invocations of a group of quads, along either side.
@@ -105,7 +111,7 @@ impl Pass {
         let mut push = self.push.clone();
         let Some(reach) = self.reach else { return (self.groups, push) };
         let rectangle = match reach {
-            Reach::Lines(axis, _, around) => rectangle.grown(around, axis.size()),
+            Reach::Lines { axis, margin, .. } => rectangle.grown(margin, axis.size()),
             _ => rectangle,
         };
         let at = push.len() - size_of::<[i32; 4]>();
@@ -118,7 +124,7 @@ impl Pass {
                 let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
                 [quads.div_ceil(QUADS_SIDE), marches.div_ceil(QUADS_SIDE), z]
             }
-            Reach::Lines(axis, line_shift, _) => {
+            Reach::Lines { axis, line_shift, .. } => {
                 let [_, lanes, marches] = rectangle.along(axis).map(u64::from);
                 // Adds the line spacing, a lane on each side and the steepest shear; the first group begins at a multiple of its
                 // lines.

@@ -42,8 +42,8 @@ impl Plan {
             return Err(Error::setting(
                 "an edit",
                 "a plan without passes for edits",
-                "Picture::keeps_horizons, a sweep along lines with fuse own, aimed-nearest, aimed \
-                 or aimed-around, a border of plane or open, and no SH, bounces, specular or sphere lights",
+                "Picture::keeps_horizons, a sweep along lines with any fuse but nearest \
+                 and slopes, a border of plane or open, and no SH, bounces, specular or sphere lights",
             ));
         }
         let Rectangle { col, row, cols, rows } = rectangle;

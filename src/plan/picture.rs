@@ -40,7 +40,7 @@ pub struct Picture {
     /// ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once; with an environment in spherical harmonics
     /// only the suns' lattices, as the harmonics keep the visibility.
     ///
-    /// Sweeps along lines, with fuse own, aimed-nearest, aimed or aimed-around and a border that does not repeat, then also accept edits
+    /// Sweeps along lines, with any fuse but nearest and slopes, and a border that does not repeat, then also accept edits
     /// ([`Plan::edit_passes`]), but not with spherical harmonics, bounces, specular, sphere lights or
     /// [`still`](Self::still). Memory: a quarter of a byte per texel.
     pub keeps_horizons: bool,
@@ -185,9 +185,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         }
     }
     if !images.need_circle() {
-        sweep = sweep.of_few();
-    } else if sweep != sweep.of_few() && active.aimed().count() > of_lights.len() {
-        notes.push("suns and key lights without shadow heights: `fuse aimed-around`".into());
+        sweep = sweep.with_fine_fuse(quality);
+    } else if sweep != sweep.with_fine_fuse(quality) && active.aimed().count() > of_lights.len() {
+        notes.push("suns and key lights that are swept along lines: `fuse aimed-around`".into());
     }
     let first_aimed = usize::from(images.need_circle());
     held.shadows.extend(of_lights.iter().map(|i| first_aimed + i));
@@ -270,7 +270,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
     if let Some(edits) = edits {
-        drawing.edit(size, &lists, edits);
+        drawing.edit(size, &lists, quality, edits);
         drawing.light(&lists, quality)?;
     }
     Plan::finish(drawing.builder, size, lists.lists.concat(), notes, used, limits)

@@ -390,7 +390,7 @@ fn fuses_that_store_occluders_take_edits() {
 
 /// Where the quality leaves it open, horizons and lights of few azimuths have `aimed-around`; a sky has `aimed-nearest`.
 #[test]
-fn lights_of_few_azimuths_have_the_closer_fuse() {
+fn horizons_and_key_lights_have_the_fine_fuse() {
     let key = KeyLight {
         azimuth_rad: 1.0,
         width_rad: 0.1,
@@ -406,8 +406,7 @@ fn lights_of_few_azimuths_have_the_closer_fuse() {
         let all = [lit.passes, found.expect("a plan").passes].concat();
         ["sky_shade", "sun_shade", "sweep_fuse"].map(|name| {
             let pass = all.iter().find(|pass| pass.name() == name).expect("planned");
-            let at = pass.shader.constants.iter().position(|c| c.name == "fuse").expect("a fuse");
-            pass.constants[at]
+            pass.constant("fuse").expect("a fuse")
         })
     };
     let base = Quality { azimuths: 8, ..Quality::default() };
@@ -420,11 +419,11 @@ fn lights_of_few_azimuths_have_the_closer_fuse() {
     // Edits grow by what the fuse of each light reads.
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let edited = plan::picture(&scene, &base, &limits, wanted).expect("a plan");
-    let around = |pass: &Pass| match pass.reach {
-        Some(Reach::Lines(_, _, around)) => Some((around, pass.azimuths.start >= 8)),
+    let margin = |pass: &Pass| match pass.reach {
+        Some(Reach::Lines { margin, .. }) => Some((margin, pass.azimuths.start >= 8)),
         _ => None,
     };
-    let reached: HashSet<_> = edited.edit_passes.iter().filter_map(around).collect();
+    let reached: HashSet<_> = edited.edit_passes.iter().filter_map(margin).collect();
     assert_eq!(reached, HashSet::from([(0, false), (2, true)]));
     assert!(edited.notes.iter().any(|note| note.contains("aimed-around")));
 }

@@ -105,7 +105,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),
         ("fuse", ..) => {
-            "with --method auto, which uses aimed-around for horizons, suns and key lights".into()
+            "with --method auto, which uses aimed-around here; --method sweep keeps it".into()
         }
         ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),
         _ => "with --border periodic: they do not divide this field".into(),

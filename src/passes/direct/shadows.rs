@@ -5,7 +5,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch::Batch;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
-use crate::passes::sweep::{Sweep, leaves_open, shadows_by_one_line};
+use crate::passes::sweep::{Sweep, has_sweep_defaults, shadows_by_one_line};
 use crate::passes::sweeping::Sweeping;
 use crate::scene::{Border, HeightField, KeyLight, Quality};
 
@@ -38,7 +38,7 @@ impl Shadows {
         (limits, used_bytes): (&Limits, u64),
     ) -> Result<(), Option<String>> {
         let size = [field.cols() as u32, field.rows() as u32];
-        if !leaves_open(quality) || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
+        if !has_sweep_defaults(quality) || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
             return Err(None);
         }
         let maxima = BlockLevels::of(size, border).maxima_size();

@@ -13,7 +13,7 @@ pub(crate) struct Images {
 }
 
 /// Distance from an occluder, in grid points, within which fuse `aimed-around` reads heights.
-const AROUND: u32 = 2;
+const MARGIN: u32 = 2;
 
 /// Sweeps the lines of a batch that an edited rectangle can reach.
 pub(crate) fn plan(
@@ -24,7 +24,7 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let around = if sweep.fuse == Fuse::AimedAround { AROUND } else { 0 };
+    let margin = if sweep.fuse == Fuse::AimedAround { MARGIN } else { 0 };
     let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
         shaders::HorizonResweep {
@@ -56,5 +56,5 @@ pub(crate) fn plan(
         batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
-    pass.reach = Some(Reach::Lines(axis, sweep.line_shift, around));
+    pass.reach = Some(Reach::Lines { axis, line_shift: sweep.line_shift, margin });
 }

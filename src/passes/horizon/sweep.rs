@@ -55,8 +55,6 @@ pub(crate) struct LineSweep {
     pub writes_occluders: bool,
     /// How results of lines come back to grid points.
     pub fuse: Fuse,
-    /// For horizons, suns and key lights: few azimuths, so that the error of each one matters.
-    pub fuse_of_few: Fuse,
     /// Azimuths that are swept together at most.
     pub azimuths: u32,
     /// Whether the lattice has room for the azimuth with the most lines, so that a light that turns keeps its size.
@@ -161,12 +159,10 @@ const GPU_PRIVATE_ENTRIES: u32 = 1024;
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
-/// Whether a quality leaves the choice of exact shadows and of the fuse to the planner.
-pub(crate) fn leaves_open(quality: &Quality) -> bool {
-    quality.method == Method::Auto
-        && quality.lines == Lines::Cell
-        && quality.fuse == Fuse::AimedNearest
-        && quality.precision == Precision::F32
+/// Whether a quality leaves the choice of exact shadows and of the fuse to the planner: it has the defaults of sweeps.
+pub(crate) fn has_sweep_defaults(quality: &Quality) -> bool {
+    let of = |q: &Quality| (q.method, q.lines, q.fuse, q.precision);
+    of(quality) == of(&Quality::default())
 }
 
 /// Whether the heights of a field fit a buffer, from which an invocation sweeps one line.
@@ -289,14 +285,15 @@ impl Sweep {
             ));
         }
         // Lane positions and steps times shears are integers of 32 bits.
+        let marches = matches!(quality.method, Method::Pyramid | Method::BruteForce);
+        if marches && total > MARCH_STEPS_LIMIT {
+            return Err(Error::Limit {
+                what: format!("`method {}`", quality.method),
+                needs: format!("{total} steps per grid point"),
+                limit: format!("{MARCH_STEPS_LIMIT} steps"),
+            });
+        }
         if quality.method == Method::Pyramid {
-            if total > MARCH_STEPS_LIMIT {
-                return Err(Error::Limit {
-                    what: "`method pyramid`".into(),
-                    needs: format!("{total} steps per grid point"),
-                    limit: format!("{MARCH_STEPS_LIMIT} steps"),
-                });
-            }
             if distances {
                 return Err(Error::setting(
                     "distances to the horizon",
@@ -307,13 +304,6 @@ impl Sweep {
             return Ok(Sweep::Pyramid(Pyramid::new(quality, sides, border)));
         }
         if quality.method == Method::BruteForce {
-            if total > MARCH_STEPS_LIMIT {
-                return Err(Error::Limit {
-                    what: "`method brute-force`".into(),
-                    needs: format!("{total} steps per grid point"),
-                    limit: format!("{MARCH_STEPS_LIMIT} steps"),
-                });
-            }
             return Ok(Sweep::March { distances });
         }
         let Some(shift) = quality.lines.shift() else {
@@ -414,7 +404,6 @@ impl Sweep {
             slope_format,
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
-            fuse_of_few: if leaves_open(quality) { Fuse::AimedAround } else { quality.fuse },
             azimuths: form.azimuths,
             any_azimuth: false,
         }))
@@ -440,7 +429,6 @@ impl Sweep {
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,
-            fuse_of_few: Fuse::Nearest,
             azimuths: u32::MAX,
             any_azimuth: true,
         })
@@ -487,10 +475,13 @@ impl Sweep {
         matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
     }
 
-    /// For horizons, suns and key lights alone.
-    pub(crate) fn of_few(mut self) -> Self {
-        if let Sweep::Lines(lines) = &mut self {
-            lines.fuse = lines.fuse_of_few;
+    /// With the more accurate fuse, where the quality leaves it open: for horizons, suns and key lights, which do not average many
+    /// azimuths.
+    pub(crate) fn with_fine_fuse(mut self, quality: &Quality) -> Self {
+        if has_sweep_defaults(quality)
+            && let Sweep::Lines(lines) = &mut self
+        {
+            lines.fuse = Fuse::AimedAround;
         }
         self
     }

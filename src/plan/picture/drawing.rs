@@ -74,7 +74,7 @@ impl Drawing<'_> {
         self.is_begun = false;
         self.specular_is_begun = false;
         self.sky_and_environment(lists);
-        self.aimed(lists);
+        self.aimed(lists, quality);
         self.sphere_lights(quality);
         self.bounces(lists);
         self.specular();
@@ -83,18 +83,25 @@ impl Drawing<'_> {
     }
 
     /// From here on passes are those of an edit. All horizons come first, as every batch lights the same texels.
-    pub(super) fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
+    pub(super) fn edit(
+        &mut self,
+        size: [u32; 2],
+        lists: &Lists,
+        quality: &Quality,
+        Edits { dirty, list }: Edits,
+    ) {
         self.builder.begin_edits();
         let (border, ids) = (self.border(), [dirty, list]);
         self.edited = Some(ids);
         let Some(sweeping) = &self.sweeping else { return };
-        let (circle, few) = lists.batches.split_at(usize::from(self.images.need_circle()));
-        let [circle, few] = [circle, few].map(<[Vec<Batch>]>::concat);
-        let has_others = circle.iter().chain(&few).any(|batch| !sweeping.is_shadow(batch));
+        let (circle, aimed) = lists.batches.split_at(usize::from(self.images.need_circle()));
+        let [circle, aimed] = [circle, aimed].map(<[Vec<Batch>]>::concat);
+        let has_others = circle.iter().chain(&aimed).any(|batch| !sweeping.is_shadow(batch));
         if has_others {
             passes::dirty_mark::plan(&mut self.builder, size, ids);
         }
-        sweeping.plan_edit(&mut self.builder, border, [&circle, &few], ids);
+        let of = (border, quality);
+        sweeping.plan_edit(&mut self.builder, of, [&circle, &aimed], ids);
         if has_others {
             passes::dirty_list::plan(&mut self.builder, size, ids);
         }
@@ -204,7 +211,7 @@ impl Drawing<'_> {
         }
     }
 
-    fn aimed(&mut self, lists: &Lists) {
+    fn aimed(&mut self, lists: &Lists, quality: &Quality) {
         let Some(sum) = self.images.sun_sum else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let batches_of_each = &lists.batches[usize::from(self.images.need_circle())..];
@@ -240,7 +247,7 @@ impl Drawing<'_> {
                 }
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);
-                let sweep = sweeping.sweep.of_few();
+                let sweep = sweeping.sweep.with_fine_fuse(quality);
                 passes::sun_shade::plan(
                     builder, &sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
                     resolves,

@@ -7,7 +7,7 @@ use ridgelight::plan::Rectangle;
 use ridgelight::plan::azimuths::even;
 use ridgelight::scene::Fuse;
 use ridgelight_cpu::dirty_mark::{dirty_mark, place};
-use ridgelight_cpu::horizon_resweep::horizon_resweep;
+use ridgelight_cpu::horizon_resweep::{grown, horizon_resweep};
 use ridgelight_cpu::shared::gather::Swept;
 
 /// Heights of a field with a changed rectangle; a new field would have another base.
@@ -72,17 +72,6 @@ proptest! {
     }
 }
 
-/// A rectangle with this many grid points more on every side, as far as the field goes.
-fn grown(rectangle: Rectangle, by: u32, field: &HeightField) -> Rectangle {
-    let along = |first: u32, count: u32, all: usize| {
-        let start = first.saturating_sub(by);
-        (start, (first + count + by).min(all as u32) - start)
-    };
-    let (col, cols) = along(rectangle.col, rectangle.cols, field.cols());
-    let (row, rows) = along(rectangle.row, rectangle.rows, field.rows());
-    Rectangle { col, row, cols, rows }
-}
-
 /// Horizons by `aimed-around` that an edit changes at grid points which it does not mark, where the rectangle of the sweep
 /// has `by` grid points more on every side.
 fn unmarked(by: u32, border: Border, line_shift: u32) -> usize {
@@ -99,7 +88,7 @@ fn unmarked(by: u32, border: Border, line_shift: u32) -> usize {
         let mut new = old.clone();
         let heights = Heights { heights_m: &after, ..Heights::of(&before, border) };
         let mut dirty = dirty_mark([before.cols(), before.rows()], rectangle);
-        let wide = grown(rectangle, by, &before);
+        let wide = grown(rectangle, by, [before.cols(), before.rows()]);
         for azimuth in &azimuths {
             horizon_resweep(heights, azimuth, &options, wide, new.of_mut(azimuth), &mut dirty);
         }

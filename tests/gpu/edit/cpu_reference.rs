@@ -71,21 +71,12 @@ pub(crate) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for k in first..first + pass.groups[2] as usize {
         let azimuth = run.plan.azimuths[k];
         let around = match pass.reach {
-            Some(Reach::Lines(_, _, around)) => around,
+            Some(Reach::Lines { margin, .. }) => margin,
             _ => 0,
         };
         pairs.extend(lines_of(run, (k, &azimuth), (options, around), &occluders));
     }
     pairs
-}
-
-/// A rectangle with this many grid points more on every side.
-fn grown(rectangle: Rectangle, by: u32, size: [usize; 2]) -> Rectangle {
-    let Rectangle { col, row, cols, rows } = rectangle;
-    let [right, below] =
-        [(col + cols, size[0]), (row + rows, size[1])].map(|(end, all)| (end + by).min(all as u32));
-    let [col, row] = [col, row].map(|first| first.saturating_sub(by));
-    Rectangle { col, row, cols: right - col, rows: below - row }
 }
 
 fn lines_of(
@@ -103,7 +94,8 @@ fn lines_of(
     let edit = run.edit.as_mut().expect("drawn");
     let before = Heights { heights_m: &edit.before, ..heights };
     sweep_reference::horizon_sweep(before, &alone, &options, &mut reference);
-    let (rectangle, dirty) = (grown(edit.rectangle, around, size), &mut edit.dirty);
+    let (rectangle, dirty) =
+        (resweep_reference::grown(edit.rectangle, around, size), &mut edit.dirty);
     resweep_reference::horizon_resweep(heights, &alone, &options, rectangle, &mut reference, dirty);
     let all = (0..march.steps).flat_map(|s| (0..slots as i32).map(move |t| (s, t)));
     let shear = azimuth.shear;

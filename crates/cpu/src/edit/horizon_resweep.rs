@@ -38,6 +38,17 @@ impl Reach {
     }
 }
 
+/// A rectangle with this many grid points more on every side, as far as a field of `cols` × `rows` goes.
+pub fn grown(rectangle: Rectangle, by: u32, [cols, rows]: [usize; 2]) -> Rectangle {
+    let along = |first: u32, count: u32, all: usize| {
+        let start = first.saturating_sub(by);
+        (start, (first + count + by).min(all as u32) - start)
+    };
+    let (col, cols) = along(rectangle.col, rectangle.cols, cols);
+    let (row, rows) = along(rectangle.row, rectangle.rows, rows);
+    Rectangle { col, row, cols, rows }
+}
+
 /// Updates the occluders of one azimuth from a sweep before the edit to one after it. Marks in `dirty` the grid
 /// points whose horizon may have changed. Returns the number of line steps swept.
 ///

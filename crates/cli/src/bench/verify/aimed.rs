@@ -49,7 +49,7 @@ pub(super) enum Horizons {
 }
 
 pub(super) fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
-    let is_aimed = matches!(quality.fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround);
+    let is_aimed = matches!(shaded.fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround);
     let is_swept = matches!(quality.method, Method::Auto | Method::Sweep)
         && quality.lines.shift().is_some()
         && quality.precision == Precision::F32;
@@ -340,8 +340,9 @@ mod tests {
         let base = Quality::default();
         assert_eq!(horizons(&base, by_heights), Horizons::Exact);
         assert_eq!(horizons(&base, by_sweeps), Horizons::NeverAbove);
+        let by_slopes = Shaded { fuse: Fuse::Slopes, ..by_sweeps };
+        assert_eq!(horizons(&base, by_slopes), Horizons::Near);
         for quality in [
-            Quality { fuse: Fuse::Slopes, ..base },
             Quality { precision: Precision::Packed, ..base },
             Quality { method: Method::Pyramid, ..base },
         ] {
