@@ -119,9 +119,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let plan = picture(&quality, &limits)?;
     let horizon = args.layers.contains(&Layer::Horizon);
     let mut used = plan.settings.clone();
+    let mut horizon_fuse = None;
     if horizon {
         let border = setup::border(&args.surface.field);
-        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
+        let of_horizons = crate::horizon::used(&scene.field, border, &quality, &limits, false)?;
+        horizon_fuse = of_horizons.iter().find(|(name, _)| name == "fuse").cloned();
+        used.extend(of_horizons);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
     let view = camera_view
@@ -146,6 +149,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             if let Some(share) = gpu.negative_share(frame)? {
                 metadata.push(("negative_share".to_owned(), share.to_string()));
             }
+            // Light may have another.
+            metadata.extend(horizon_fuse.map(|(_, fuse)| ("horizon_fuse".to_owned(), fuse)));
             Ok((times, pixels, camera_pixels, metadata))
         })?;
     metadata.extend(setup::asked(

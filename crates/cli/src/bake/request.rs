@@ -131,9 +131,8 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
 
 pub fn quality(args: &BakeArgs) -> Result<Quality> {
     let mut quality = args.quality.quality()?;
-    if quality.method == Method::Auto {
-        let is_exact = quality.lines == Lines::Exact;
-        quality.method = if is_exact { Method::BruteForce } else { Method::Sweep };
+    if quality.method == Method::Auto && quality.lines == Lines::Exact {
+        quality.method = Method::BruteForce;
     }
     if quality.lines == Lines::Exact && quality.method != Method::BruteForce {
         return Err(Error::setting(

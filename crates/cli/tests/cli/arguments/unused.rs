@@ -136,6 +136,18 @@ fn gpu_results_are_those_without_the_flag() {
         all.push(std::fs::read(folder.path("h.npy")).unwrap());
     }
     assert!(all[0] == all[1]);
+    let run = folder.run_str("horizon field.npy -o h.npy --azimuths 8 --fuse aimed-nearest");
+    let said = "note: --fuse aimed-nearest changes nothing with --method auto, which uses aimed-around here; --method sweep \
+                keeps it\n";
+    assert_eq!((run.status, run.err.as_str()), (Some(0), said));
+    assert!(all[0] == std::fs::read(folder.path("h.npy")).unwrap());
+    let run = folder.run_str(
+        "render field.npy -o s.exr --sky 1 --layers horizon --azimuths 8 --json s.json -q",
+    );
+    let report = std::fs::read_to_string(folder.path("s.json")).unwrap();
+    let has = |setting: &str| report.contains(setting);
+    assert!(run.status == Some(0) && has("\"horizon_fuse\": \"aimed-around\""), "{report}");
+    assert!(has("\"fuse\": \"aimed-nearest\""), "{report}");
     let args = "render field.npy -o s.exr --seed 3";
     let run = folder.run_str(args);
     let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";
