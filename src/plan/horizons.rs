@@ -24,8 +24,7 @@ pub fn horizons(
     quality.check()?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
-    let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?
-        .with_fine_fuse(quality);
+    let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?;
     if distances && matches!(&sweep, Sweep::Lines(l) if !l.writes_occluders || l.slope_format > 0) {
         return Err(Error::setting(
             "distances to the horizon",

@@ -184,11 +184,6 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             Err(None) => {}
         }
     }
-    if !images.need_circle() {
-        sweep = sweep.with_fine_fuse(quality);
-    } else if sweep != sweep.with_fine_fuse(quality) && active.aimed().count() > of_lights.len() {
-        notes.push("suns and key lights that are swept along lines: `fuse aimed-around`".into());
-    }
     let first_aimed = usize::from(images.need_circle());
     held.shadows.extend(of_lights.iter().map(|i| first_aimed + i));
     let shadows = (!of_lights.is_empty()).then(|| {
@@ -270,7 +265,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
     if let Some(edits) = edits {
-        drawing.edit(size, &lists, quality, edits);
+        drawing.edit(size, &lists, edits);
         drawing.light(&lists, quality)?;
     }
     Plan::finish(drawing.builder, size, lists.lists.concat(), notes, used, limits)

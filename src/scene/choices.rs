@@ -8,7 +8,7 @@ words! {
         /// The planner's choice: a sweep, and exact shadows of suns
         ///
         /// Where `lines`, `fuse` and `precision` have their defaults, suns and key lights that span at most 5 degrees of
-        /// elevation have exact shadows; horizons and other key lights use fuse aimed-around.
+        /// elevation have exact shadows.
         Auto = "auto",
         /// Hull sweeps along lines
         ///
@@ -54,7 +54,7 @@ impl Lines {
 
 words! {
     /// How the results of lines are interpolated to the texels between them (TW10's fuse).
-    pub enum Fuse = AimedNearest {
+    pub enum Fuse = AimedAround {
         /// Slope of the nearer line
         Nearest = "nearest",
         /// Slopes of both lines, interpolated

@@ -22,7 +22,7 @@ settings! {
         ///
         /// Under an environment they are densest where it is brightest when the plan is made (even with exact lines and
         /// with harmonics); an environment that changes later keeps them.
-        Everyone "azimuths" azimuths: u32 = 64, Values::Whole(4..=1024);
+        Everyone "azimuths" azimuths: u32 = 32, Values::Whole(4..=1024);
 
         /// Slices across a sun, key light or sphere light, 1 to 256
         ///
@@ -48,12 +48,11 @@ settings! {
 
         /// Interpolation of the results of lines to texels
         ///
-        /// aimed-nearest is as fast as nearest and more exact than nearest, slopes and own (llvmpipe, lines one cell
-        /// apart). aimed and aimed-around are slower and more exact. With method auto and the defaults of lines,
-        /// fuse and precision, horizons and key lights without exact shadows use aimed-around.
+        /// aimed-around is the most exact. A frame with aimed-nearest takes about half its time; it is as fast as nearest
+        /// and more exact than nearest, slopes and own (llvmpipe, lines one cell apart).
         ///
-        /// Times and errors, without aimed-around: benches/results/accuracy_N44W072.txt.
-        Expert "fuse" fuse: Fuse = Fuse::AimedNearest, Fuse::WORDS;
+        /// Times and errors: benches/results/defaults.txt.
+        Expert "fuse" fuse: Fuse = Fuse::AimedAround, Fuse::WORDS;
 
         /// Precision of what a sweep stores
         ///

@@ -33,8 +33,8 @@ pub fn notes(
     for (setting, value) in written.iter().filter(|(s, _)| s != "method" && setting_of(s).is_some())
     {
         let by_name = |(name, used): &(String, String)| {
-            // The planner may choose another value of these.
-            let is_kept = !matches!(name.as_str(), "lines" | "fuse" | "precision") || used == value;
+            // The planner may choose another value of these two.
+            let is_kept = !matches!(name.as_str(), "lines" | "precision") || used == value;
             name == setting && is_kept
         };
         if !used.iter().any(by_name) {
@@ -104,9 +104,6 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         (_, Some("brute-force"), _) => "with --method brute-force".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),
-        ("fuse", ..) => {
-            "with --method auto, which uses aimed-around here; --method sweep keeps it".into()
-        }
         ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),
         _ => "with --border periodic: they do not divide this field".into(),
     }

@@ -119,12 +119,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let plan = picture(&quality, &limits)?;
     let horizon = args.layers.contains(&Layer::Horizon);
     let mut used = plan.settings.clone();
-    let mut horizon_fuse = None;
     if horizon {
         let border = setup::border(&args.surface.field);
-        let of_horizons = crate::horizon::used(&scene.field, border, &quality, &limits, false)?;
-        horizon_fuse = of_horizons.iter().find(|(name, _)| name == "fuse").cloned();
-        used.extend(of_horizons);
+        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
     let view = camera_view
@@ -149,8 +146,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             if let Some(share) = gpu.negative_share(frame)? {
                 metadata.push(("negative_share".to_owned(), share.to_string()));
             }
-            // Light may have another.
-            metadata.extend(horizon_fuse.map(|(_, fuse)| ("horizon_fuse".to_owned(), fuse)));
             Ok((times, pixels, camera_pixels, metadata))
         })?;
     metadata.extend(setup::asked(
@@ -172,6 +167,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let mut shown = None;
+    let night = if setup::is_night(&args.lights, &scene.lights) { NIGHT_SHARE } else { 1.0 };
+    let white = night * white(&scene.field, tint);
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
         if is_png {
@@ -179,9 +176,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             let around: Vec<bool> =
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
             let picture = &camera_pixels.radiance;
-            let exposure = args
-                .exposure
-                .unwrap_or_else(|| exposure(picture, Some(&around), white(&scene.field, tint)));
+            let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around), white));
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
@@ -202,8 +197,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     } else {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
-        let exposure =
-            args.exposure.unwrap_or_else(|| exposure(&picture, voids, white(&scene.field, tint)));
+        let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids, white));
         shown = Some(exposure);
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
@@ -247,6 +241,9 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
     let is_positive = x.into().is_finite() && x.into() > 0.0;
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
 }
+
+/// Brightness of a picture of the night over that of others, where the exposure is automatic.
+const NIGHT_SHARE: f64 = 0.1;
 
 /// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without
 /// that colour stays as dark as its tint.

@@ -257,6 +257,24 @@ pub fn check_suns(suns: &[Sun], lowest_deg: f64) -> Result<()> {
 /// refused.
 const NIGHT: f32 = 1e-6;
 
+fn has_set(sun: &Sun) -> bool {
+    (-std::f64::consts::FRAC_PI_2..0.0).contains(&sun.elevation_rad)
+}
+
+fn is_dark(lights: &Lights) -> bool {
+    let has_sky = lights.sky.is_some() || lights.environment.is_some();
+    let has_others = !lights.suns.is_empty() || !lights.keys.is_empty();
+    !has_sky && !has_others && lights.near().next().is_none()
+}
+
+/// Whether a scene has no light but the sky of a night.
+pub fn is_night(args: &LightArgs, lights: &Lights) -> bool {
+    let has_sky = matches!(args.sky, Some(SkyArg::Uniform(_))) || lights.environment.is_some();
+    !has_sky
+        && args.others.0.suns.iter().any(has_set)
+        && is_dark(&Lights { sky: None, ..lights.clone() })
+}
+
 fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     let mut lights = args.others.0.clone();
     check_suns(&lights.suns, -90.0)?;
@@ -282,13 +300,9 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
         }
     }
     // A sun that has set is night, not an error.
-    let has_set = |sun: &Sun| (-std::f64::consts::FRAC_PI_2..0.0).contains(&sun.elevation_rad);
     let night = lights.suns.iter().find(|sun| has_set(sun)).map(|sun| sun.irradiance);
     lights.suns.retain(|sun| !has_set(sun));
-    let has_sky = lights.sky.is_some() || lights.environment.is_some() || args.env.is_some();
-    let has_others = !lights.suns.is_empty() || !lights.keys.is_empty();
-    let is_dark = !has_sky && !has_others && lights.near().next().is_none();
-    if let Some(irradiance) = night.filter(|_| is_dark) {
+    if let Some(irradiance) = night.filter(|_| is_dark(&lights) && args.env.is_none()) {
         lights.sky = Some(irradiance.map(|c| NIGHT * c));
     }
     if let Some(path) = &args.env {

@@ -159,7 +159,7 @@ const GPU_PRIVATE_ENTRIES: u32 = 1024;
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
-/// Whether a quality leaves the choice of exact shadows and of the fuse to the planner: it has the defaults of sweeps.
+/// Whether a quality leaves the choice of exact shadows to the planner: it has the defaults of sweeps.
 pub(crate) fn has_sweep_defaults(quality: &Quality) -> bool {
     let of = |q: &Quality| (q.method, q.lines, q.fuse, q.precision);
     of(quality) == of(&Quality::default())
@@ -473,17 +473,6 @@ impl Sweep {
     /// Whether the first crossings of a grid point's own line are among its candidates.
     pub(crate) fn sees_own_crossings(&self) -> bool {
         matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
-    }
-
-    /// With the more accurate fuse, where the quality leaves it open: for horizons, suns and key lights, which do not average many
-    /// azimuths.
-    pub(crate) fn with_fine_fuse(mut self, quality: &Quality) -> Self {
-        if has_sweep_defaults(quality)
-            && let Sweep::Lines(lines) = &mut self
-        {
-            lines.fuse = Fuse::AimedAround;
-        }
-        self
     }
 
     /// The shaders' FUSE.

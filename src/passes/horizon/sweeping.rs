@@ -85,16 +85,14 @@ impl Sweeping {
         self.shadows.contains(&batch.number)
     }
 
-    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change. `circle` has the
-    /// batches of the sky and the environment, `aimed` those of suns and key lights.
-    pub(crate) fn plan_edit(
+    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
+    pub(crate) fn plan_edit<'a>(
         &self,
         builder: &mut Builder,
-        (border, quality): (Border, &Quality),
-        [circle, aimed]: [&[Batch]; 2],
+        border: Border,
+        batches: impl Iterator<Item = &'a Batch> + Clone,
         [dirty, list]: [ResourceId; 2],
     ) {
-        let batches = circle.iter().chain(aimed);
         for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
             let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
             if let (Some(axis), Some(lanes)) = (axis, lanes) {
@@ -102,10 +100,8 @@ impl Sweeping {
                 passes::height_transpose::plan(builder, axis, border, self.heights, lanes, buffer);
             }
         }
-        let fine = self.sweep.with_fine_fuse(quality);
-        let aimed = aimed.iter().filter(|batch| !self.is_shadow(batch)).map(|b| (b, fine));
-        for (batch, sweep) in circle.iter().map(|b| (b, self.sweep)).chain(aimed) {
-            let Some(sweep) = sweep.editable(border) else { return };
+        let Some(sweep) = self.sweep.editable(border) else { return };
+        for batch in batches.filter(|batch| !self.is_shadow(batch)) {
             let images = passes::horizon_resweep::Images {
                 heights: self.heights,
                 azimuths: self.azimuths,

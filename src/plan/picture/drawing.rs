@@ -3,7 +3,6 @@
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
-use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, WalkedOver, bounce_name};
 use crate::passes::edits::Edits;
@@ -74,7 +73,7 @@ impl Drawing<'_> {
         self.is_begun = false;
         self.specular_is_begun = false;
         self.sky_and_environment(lists);
-        self.aimed(lists, quality);
+        self.aimed(lists);
         self.sphere_lights(quality);
         self.bounces(lists);
         self.specular();
@@ -83,25 +82,17 @@ impl Drawing<'_> {
     }
 
     /// From here on passes are those of an edit. All horizons come first, as every batch lights the same texels.
-    pub(super) fn edit(
-        &mut self,
-        size: [u32; 2],
-        lists: &Lists,
-        quality: &Quality,
-        Edits { dirty, list }: Edits,
-    ) {
+    pub(super) fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
         self.builder.begin_edits();
         let (border, ids) = (self.border(), [dirty, list]);
         self.edited = Some(ids);
         let Some(sweeping) = &self.sweeping else { return };
-        let (circle, aimed) = lists.batches.split_at(usize::from(self.images.need_circle()));
-        let [circle, aimed] = [circle, aimed].map(<[Vec<Batch>]>::concat);
-        let has_others = circle.iter().chain(&aimed).any(|batch| !sweeping.is_shadow(batch));
+        let batches = lists.batches.iter().flatten();
+        let has_others = batches.clone().any(|batch| !sweeping.is_shadow(batch));
         if has_others {
             passes::dirty_mark::plan(&mut self.builder, size, ids);
         }
-        let of = (border, quality);
-        sweeping.plan_edit(&mut self.builder, of, [&circle, &aimed], ids);
+        sweeping.plan_edit(&mut self.builder, border, batches, ids);
         if has_others {
             passes::dirty_list::plan(&mut self.builder, size, ids);
         }
@@ -211,7 +202,7 @@ impl Drawing<'_> {
         }
     }
 
-    fn aimed(&mut self, lists: &Lists, quality: &Quality) {
+    fn aimed(&mut self, lists: &Lists) {
         let Some(sum) = self.images.sun_sum else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let batches_of_each = &lists.batches[usize::from(self.images.need_circle())..];
@@ -247,9 +238,9 @@ impl Drawing<'_> {
                 }
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);
-                let sweep = sweeping.sweep.with_fine_fuse(quality);
+                let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, &sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
+                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
                     resolves,
                 );
             }

@@ -22,8 +22,14 @@ use crate::common::{Outcome, cells, head, inputs, xorshift};
 
 /// The median of three draws after the first.
 const RUNS: usize = 3;
+/// Of horizons. With fewer, the error of sky light would be less that of the horizons.
+const AZIMUTHS: u32 = 64;
 /// Grid points, rows and columns.
 type Picks = [[usize; 2]];
+
+fn base() -> Quality {
+    Quality { azimuths: AZIMUTHS, ..Quality::default() }
+}
 
 /// Elevations at the picked grid points, by azimuth and pick, and metres to the occluders if requested.
 pub fn horizons(
@@ -121,11 +127,11 @@ fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
     head(
         "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % |",
     );
-    let even = ground.horizons(&Quality::default())?;
+    let even = ground.horizons(&base())?;
     for (i, (level_step, level_offset)) in LEVEL_STEPS.into_iter().zip(LEVEL_OFFSETS).enumerate() {
         let levels = if i < 13 { Levels::Stack } else { Levels::Pyramid };
         let method = Method::Pyramid;
-        let quality = Quality { method, level_step, level_offset, levels, ..Quality::default() };
+        let quality = Quality { method, level_step, level_offset, levels, ..base() };
         let [angles, _] = horizons(gpu, ground.field, &quality, &ground.picks, false)?;
         let e = ground.error(&angles, &even)?;
         let found = drawn(gpu, &ground.sky, &quality, 0)?;
@@ -161,10 +167,10 @@ fn sweeps(gpu: &mut Headless, ground: &Ground) -> Result<()> {
     if mega * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::BruteForce, Lines::Cell, Fuse::AimedNearest));
     }
-    let even = ground.horizons(&Quality::default())?;
+    let even = ground.horizons(&base())?;
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
-        let quality = Quality { method, lines, fuse, ..Quality::default() };
+        let quality = Quality { method, lines, fuse, ..base() };
         let is_exact = lines == Lines::Exact;
         let found = horizons(gpu, field, &quality, picks, is_exact)?;
         let own = if is_exact { Some(ground.horizons(&quality)?) } else { None };
@@ -236,7 +242,7 @@ pub fn run(mut args: Args) -> Outcome {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let sky = inputs::lit_by(field.clone(), lights);
     let [cols, rows] = [field.cols(), field.rows()];
-    println!("{cols} × {rows} grid points, 64 azimuths, {}\n", gpu.report().name);
+    println!("{cols} × {rows} grid points, {AZIMUTHS} azimuths, {}\n", gpu.report().name);
     let ground = Ground { field, oracle, picks, sky, sky_light };
     if has_pyramids {
         return Ok(pyramids(&mut gpu, &ground)?);

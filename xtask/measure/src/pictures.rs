@@ -44,7 +44,7 @@ pub fn picture(mut args: Args) -> Outcome {
     let mut gpu = args.open()?;
     let mut scene = inputs::under(inputs::mountain(1.0)?, inputs::sky(0.0)?);
     scene.lights.suns = vec![inputs::sun(90.0 - 300.0, 10.0, [15.0; 3])];
-    let quality = Quality { azimuths: 64, ..Quality::default() };
+    let quality = Quality::default();
     let method = Method::BruteForce;
     let brute = Quality { method, azimuths: 360, sun_azimuths: 64, ..quality };
     let ours = drawn(&mut gpu, &scene, &quality, 1)?;
@@ -92,7 +92,7 @@ pub fn terrain(mut args: Args) -> Outcome {
     // From the left.
     scene.lights.suns = vec![inputs::sun(90.0 - 185.0, 11.0, [26.0, 19.0, 12.0])];
     let bounces = Bounces { count: 1, engine: BounceEngine::Sweep, ..Bounces::default() };
-    let quality = Quality { azimuths: 64, sun_azimuths: 8, bounces, ..Quality::default() };
+    let quality = Quality { bounces, ..Quality::default() };
     let options = ViewOptions { size: [1200, 500], ..ViewOptions::default() };
     // From the east, above the ravines.
     let camera = Camera {

@@ -517,7 +517,7 @@ fn every_setting_of_c_is_the_one_of_rust() {
         assert!(has && !had, "{name} {value}: {of:?}, of zeros {default:?}");
     };
     let zero = zeroed::<RidgelightQuality>;
-    changed(RidgelightQuality { azimuths: 32, ..zero() }, "azimuths", "32");
+    changed(RidgelightQuality { azimuths: 64, ..zero() }, "azimuths", "64");
     changed(RidgelightQuality { method: 4, ..zero() }, "method", "brute-force");
     changed(RidgelightQuality { fuse: 5, ..zero() }, "fuse", "aimed");
     changed(RidgelightQuality { table_elevations: 64, ..zero() }, "table_elevations", "64");

@@ -102,16 +102,14 @@ fn jobs(field: &HeightField) -> [(&'static str, Option<u64>); 3] {
     let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field: field.clone(), surface: Surface::default(), lights: sky };
     let limits = Limits::boundless(true, 1 << 50);
-    let bytes = |scene: &Scene, quality: &Quality, sky_view: bool| {
-        let wanted = Picture { sky_view, still: true, ..Picture::default() };
-        Some(plan::picture(scene, quality, &limits, wanted).ok()?.bytes())
-    };
-    let mut bounced = Quality::default();
-    bounced.bounces.count = 1;
-    let sky_view = bytes(&scene, &Quality::default(), true);
-    let bounces = bytes(&scene, &bounced, false);
-    let render = start::bytes_of(field, &limits).ok();
-    [("render", render), ("sky_view", sky_view), ("render_bounces_1", bounces)]
+    let wanted = Picture { sky_view: true, still: true, ..Picture::default() };
+    let sky_view = plan::picture(&scene, &Quality::default(), &limits, wanted).ok();
+    let render = |count| start::bytes_of(field, count, &limits).ok();
+    [
+        ("render", render(0)),
+        ("sky_view", sky_view.map(|plan| plan.bytes())),
+        ("render_bounces_1", render(1)),
+    ]
 }
 
 fn say(args: &InfoArgs, facts: &Value) {

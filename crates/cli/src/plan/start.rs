@@ -36,7 +36,7 @@ pub fn start(
         Ok(scene) => scene,
         Err(why) => return (Start::Nothing, Some(why)),
     };
-    let Err(why) = bytes(&whole, limits) else { return (Start::Whole, None) };
+    let Err(why) = bytes(&whole, 0, limits) else { return (Start::Whole, None) };
     // The budget of a software driver is no memory that exists, that of a GPU half of what exists.
     let most = match limits {
         _ if is_given => 0,
@@ -44,16 +44,17 @@ pub fn start(
         Limits { memory_budget, .. } => memory_budget.saturating_mul(2),
     };
     // None where no device can hold the field.
-    let least = bytes(&whole, &Limits::boundless(limits.is_cpu, 1 << 50)).ok();
+    let least = bytes(&whole, 0, &Limits::boundless(limits.is_cpu, 1 << 50)).ok();
     let first = least.map(|least| least.max(limits.memory_budget).div_ceil(GIB));
     let all = first.into_iter().flat_map(|first| first..first + TRIES);
-    let fits = |gib: &u64| bytes(&whole, &Limits { memory_budget: gib * GIB, ..*limits }).is_ok();
+    let fits =
+        |gib: &u64| bytes(&whole, 0, &Limits { memory_budget: gib * GIB, ..*limits }).is_ok();
     if let Some(gib) = all.take_while(|gib| gib * GIB <= most).find(fits) {
         return (Start::Budget(gib), Some(why));
     }
     let part = at.and_then(|at| {
         let all = (1..usize::BITS).map_while(|halvings| middle(field, halvings));
-        let fits = |(part, _): &(HeightField, [usize; 2])| bytes_of(part, limits).is_ok();
+        let fits = |(part, _): &(HeightField, [usize; 2])| bytes_of(part, 0, limits).is_ok();
         let (part, [top, left]) = all.into_iter().find(fits)?;
         let [west, north] =
             [at.corner[0] + left as f64 * at.cell[0], at.corner[1] - top as f64 * at.cell[1]];
@@ -74,9 +75,9 @@ fn middle(field: &HeightField, halvings: u32) -> Option<(HeightField, [usize; 2]
     Some((part, [top, left]))
 }
 
-/// Memory of `render -o picture.png` with its default light, tint and settings.
-pub fn bytes_of(field: &HeightField, limits: &Limits) -> Result<u64> {
-    bytes(&scene(field)?, limits)
+/// Memory of `render -o picture.png` with its default light, tint and settings, and so many bounces.
+pub fn bytes_of(field: &HeightField, bounces: u32, limits: &Limits) -> Result<u64> {
+    bytes(&scene(field)?, bounces, limits)
 }
 
 fn scene(field: &HeightField) -> Result<Scene> {
@@ -90,9 +91,11 @@ fn scene(field: &HeightField) -> Result<Scene> {
     Ok(Scene { field: field.clone(), surface, lights })
 }
 
-fn bytes(scene: &Scene, limits: &Limits) -> Result<u64> {
+fn bytes(scene: &Scene, bounces: u32, limits: &Limits) -> Result<u64> {
     let wanted = Picture { still: true, ..Picture::default() };
-    Ok(plan::picture(scene, &Quality::default(), limits, wanted)?.bytes())
+    let mut quality = Quality::default();
+    quality.bounces.count = bounces;
+    Ok(plan::picture(scene, &quality, limits, wanted)?.bytes())
 }
 
 #[cfg(test)]
@@ -107,7 +110,7 @@ mod tests {
         let device = Limits::lavapipe();
         let started = |limits: &Limits, is_given| start(&field, Some(&at), limits, is_given);
         assert!(matches!(started(&device, false), (Start::Whole, None)));
-        let poor = Limits { memory_budget: bytes_of(&field, &device).unwrap() - 1, ..device };
+        let poor = Limits { memory_budget: bytes_of(&field, 0, &device).unwrap() - 1, ..device };
         assert!(matches!(started(&poor, false), (Start::Budget(1), Some(_))));
         // Half of 200 columns and of 96 rows, a quarter from each edge.
         let middle = [1000.0, 240.0, 2000.0, 720.0];

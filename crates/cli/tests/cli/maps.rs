@@ -490,7 +490,7 @@ fn gpu_four_azimuths_make_a_stellarium_horizon_map() {
     refused(
         &folder,
         &[
-            ("horizon field.npy -o h.png", 2, &["--azimuths: found 64", "4, for a .png"]),
+            ("horizon field.npy -o h.png", 2, &["--azimuths: found 32", "4, for a .png"]),
             ("horizon field.npy -o h.png --azimuths 4 --lines exact", 2, &["--lines: found exact"]),
             ("horizon field.npy -o h.png --azimuths 4 --fourier 2,5", 2, &["ktx2"]),
         ],

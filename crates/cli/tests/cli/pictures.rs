@@ -130,6 +130,14 @@ fn gpu_a_sun_that_has_set_is_night() {
     assert!(dusk == sky);
     let run = folder.run_str(&format!("render {input} --sun 10,-95 -o wrong.exr"));
     assert_eq!(run.status, Some(2), "{}", run.err);
+    // A picture of the night is dark. 0.8 is code 231 of sRGB, 0.08 code 80.
+    for (flags, brightest) in [("--sun 10,-5", 80), ("--sun 10,-5 --sky 0.5", 231)] {
+        succeeded(&folder, &format!("render {input} {flags} --tint none -o night.png --quiet"));
+        let mut codes = image::open(folder.path("night.png")).unwrap().into_luma8().into_raw();
+        codes.sort_unstable();
+        let found = codes[99 * codes.len() / 100];
+        assert!(found.abs_diff(brightest) <= 1, "{flags}: {found}");
+    }
 }
 
 /// A .png states the tint that it has.

@@ -279,7 +279,11 @@ impl Costs {
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
         let sphere_slices = f64::from(quality.sun_azimuths) * scene.lights.near().count() as f64;
         let [walk, march, gather] = bounced::work(scene, quality);
-        let [sweep, exact, shade] = [sweep, exact, shade].map(|each| all * each);
+        let [sweep, exact] = [sweep, exact].map(|each| all * each);
+        // Exact shadows of suns do not depend on the fuse.
+        let has_exact = quality.method == Method::Auto;
+        let of_discs = if has_exact { SHADE[0][spacing] } else { shade };
+        let shade = f64::from(circle + keys) * shade + f64::from(discs) * of_discs;
         [sweep, exact, shade, table, sphere_slices * SLICE, 1.0, walk, march, gather]
     }
 

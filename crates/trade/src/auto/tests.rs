@@ -83,7 +83,10 @@ fn the_fastest_that_reaches_the_goal_is_chosen() {
 fn unreachable_goals_are_refused() {
     for (goal, parts) in [
         (Goal::MaxError(1e-12), ["`max_error 0.000000000001`: needs an oracle", "half"]),
-        (Goal::MaxError(2e-5), ["`max_error 0.00002`: needs more than 18 frames", "nearest found"]),
+        (
+            Goal::MaxError(2e-5),
+            ["frames, the most that are tried, the limit is 0.00002", "nearest found"],
+        ),
         (Goal::MaxCost(1e6), ["`time_budget 1`: needs 8.00 ms", "the limit is 1 ms"]),
     ] {
         let error = chosen(goal).unwrap_err();

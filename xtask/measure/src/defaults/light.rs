@@ -87,26 +87,21 @@ pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
             Some(swept("--sun-azimuths 16", Quality { sun_azimuths: 16, ..default })),
         ],
         Kind::Sky | Kind::Environment => [
-            Some(swept("--azimuths 32", Quality { azimuths: 32, ..default })),
-            Some(swept("--azimuths 128", Quality { azimuths: 128, ..default })),
+            Some(swept("--azimuths 16", Quality { azimuths: 16, ..default })),
+            Some(swept("--azimuths 64", Quality { azimuths: 64, ..default })),
         ],
         Kind::Horizons => [None, None],
     };
-    // The fuse that the other kinds have by default.
-    let other_fuse = match kind {
-        Kind::Key | Kind::Horizons => {
-            swept("--method sweep", Quality { method: Method::Sweep, ..default })
-        }
-        Kind::Sky | Kind::Environment => {
-            swept("--fuse aimed-around", Quality { fuse: Fuse::AimedAround, ..default })
-        }
-    };
+    let nearest = Quality { fuse: Fuse::AimedNearest, ..default };
     let mut all = vec![
         swept("default", default),
+        swept("--fuse aimed-nearest", nearest),
         swept("--fuse aimed", Quality { fuse: Fuse::Aimed, ..default }),
-        other_fuse,
         swept("--lines 2", Quality { lines: Lines::TwoCells, ..default }),
     ];
+    if matches!(kind, Kind::Sky | Kind::Environment) {
+        all.push(swept("--fuse aimed-nearest --azimuths 64", Quality { azimuths: 64, ..nearest }));
+    }
     all.extend(fewer);
     if border != Border::Plane {
         return all;

@@ -12,7 +12,7 @@ const MODES: [&str; 17] = [
     "horizons: `--lines exact` | exact | accuracy_mt_washington_256 | worst horizon {exact@6}°",
     "horizons: `--method brute-force` | exact but for rounding | accuracy_mt_washington_256 | worst horizon {brute@6}°",
     "horizons: sweep, the default | approximate, never too high | accuracy_mt_washington_256 | horizons {1;aimed-around@2}° mean, \
-     {1;aimed-around@5}° at 99.9 %; sky light (`aimed-nearest`) {1;aimed-nearest@7} %",
+     {1;aimed-around@5}° at 99.9 %; sky light {1;aimed-around@7} % with 64 azimuths",
     "horizons: `--method pyramid` | approximate | pyramids_mt_washington_256 | horizons {4;2;stack@4}° mean; sky light \
      {4;2;stack@7} %",
     "environment by tables | approximate | accuracy_N44W072 | {64@1} % with 64 azimuths",

@@ -119,9 +119,7 @@ fn measured(gpu: &mut Headless, scene: &Scene) -> Result<[Panel; 2]> {
         by_azimuths.push((azimuths, errors, floor));
     }
     println!();
-    head(
-        "| sub-sampling; default sweep, 64 azimuths | against exact horizons | against every grid point |",
-    );
+    head("| sub-sampling; default sweep | against exact horizons | against every grid point |");
     let sh = Quality { basis: Basis::Sh, ..Quality::default() };
     let whole = bench.light(&sh)?;
     for subsample in [1, 2, 4] {

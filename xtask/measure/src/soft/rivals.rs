@@ -108,10 +108,11 @@ pub fn run(mut args: Args) -> Outcome {
     let (output, folder) = (args.path("-o")?, args.folder().ok_or("expected FOLDER")?);
     let mut gpu = args.open()?;
     println!(
-        "{}\nthe middle {side}²; time of a frame over that of the defaults (a sweep of 64 azimuths, tables), each \
+        "{}\nthe middle {side}²; time of a frame over that of the defaults (a sweep of {} azimuths, tables), each \
          drawn in turn with them, medians of {runs} (one draw where another of the same engine and basis is more exact and \
          takes two thirds of the time); error: relative RMSE, against exact horizons of 256 azimuths and tables\n",
-        gpu.report().name
+        gpu.report().name,
+        Quality::default().azimuths
     );
     let (mut panels, mut reached, mut agreed) = (Vec::new(), 0, 0);
     for (name, field, environment) in SCENES {

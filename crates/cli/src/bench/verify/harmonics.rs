@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 use ridgelight::Result;
 use ridgelight::plan::{self, Azimuth, Nodes};
-use ridgelight::scene::{Border, Method, Quality, Receiver, Scene};
+use ridgelight::scene::{Border, Quality, Receiver, Scene};
 use ridgelight_cpu::harmonics::{Harmonics, Visibility};
 use ridgelight_cpu::sh_shade::nodes_around;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
@@ -117,9 +117,6 @@ pub(super) fn with_nodes(scene: &Scene, of: &[usize], device: &mut Device) -> Re
         _ => of.iter().flat_map(around).collect::<BTreeSet<_>>().into_iter().collect(),
     };
     let mut all: Vec<Place> = of.iter().chain(&nodes).map(|p| Place::of(scene, *p)).collect();
-    // As the visibility is: a method left to the planner would find horizons by another fuse.
-    let method = if quality.method == Method::Auto { Method::Sweep } else { quality.method };
-    let quality = &Quality { method, ..*quality };
     let limits = device.limits;
     let mut take = |k: u32, angles: &[f32], _: &[f32]| {
         let azimuth = plan::horizons(field, border, quality, limits, (k, 1), false)?.azimuths[0];

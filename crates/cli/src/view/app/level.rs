@@ -4,7 +4,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Frame, ImageArg, Work};
 use ridgelight::plan::{self, Limits, Picture, Rectangle};
 use ridgelight::scene::{
-    Albedo, Bounces, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface,
+    Albedo, Bounces, Fuse, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface,
 };
 use ridgelight_viewer::Screen;
 
@@ -287,15 +287,19 @@ fn first_sun(scene: &Scene) -> Option<(usize, &Sun)> {
 }
 
 /// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
-/// as some need another method. The sun has one azimuth, and bounces only in the sky's light.
+/// as some need another method. The sun has one azimuth; bounces and the faster fuse are of the sky's light only.
 fn coarser(quality: &Quality, of: usize) -> Quality {
-    let count = if of == SUN { 0 } else { quality.bounces.count };
+    let (count, fuse) = match of {
+        SUN => (0, quality.fuse),
+        _ => (quality.bounces.count, Fuse::AimedNearest),
+    };
     Quality {
         azimuths: quality.azimuths.min(AZIMUTHS),
         sun_azimuths: 1,
         bounces: Bounces { count, ..quality.bounces },
         method: Method::default(),
         lines: Lines::default(),
+        fuse,
         ..*quality
     }
 }

@@ -44,7 +44,7 @@ fn flags_that_change_nothing_are_noted() {
             ],
         ),
         ("--lines exact --fuse aimed", &["--fuse aimed changes nothing with --lines exact"]),
-        ("--precision f16", &["--precision f16 changes nothing with --fuse aimed-nearest"]),
+        ("--precision f16", &["--precision f16 changes nothing with --fuse aimed-around"]),
         ("--table-elevations 64", &["--table-elevations 64 changes nothing without an env"]),
         ("--basis sh", &["--basis sh changes nothing without an environment"]),
         ("--env env.hdr --sh-order 3", &["--sh-order 3 changes nothing without --basis sh"]),
@@ -108,7 +108,7 @@ fn other_flags_are_not_noted() {
         "--method brute-force --azimuths 8",
         "--lines 2 --fuse slopes --precision f16 --hull shared --azimuths 8",
         "--precision packed --hull occluder-list",
-        "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
+        "--precision f32 --lines 1 --fuse aimed-around --hull auto --method sweep",
         "--sun 90,30 --sun-azimuths 4",
         "--key 90,45,360,90,1 --sun-azimuths 4",
         "--env env.hdr --table-elevations 64 --azimuths 8",
@@ -136,18 +136,6 @@ fn gpu_results_are_those_without_the_flag() {
         all.push(std::fs::read(folder.path("h.npy")).unwrap());
     }
     assert!(all[0] == all[1]);
-    let run = folder.run_str("horizon field.npy -o h.npy --azimuths 8 --fuse aimed-nearest");
-    let said = "note: --fuse aimed-nearest changes nothing with --method auto, which uses aimed-around here; --method sweep \
-                keeps it\n";
-    assert_eq!((run.status, run.err.as_str()), (Some(0), said));
-    assert!(all[0] == std::fs::read(folder.path("h.npy")).unwrap());
-    let run = folder.run_str(
-        "render field.npy -o s.exr --sky 1 --layers horizon --azimuths 8 --json s.json -q",
-    );
-    let report = std::fs::read_to_string(folder.path("s.json")).unwrap();
-    let has = |setting: &str| report.contains(setting);
-    assert!(run.status == Some(0) && has("\"horizon_fuse\": \"aimed-around\""), "{report}");
-    assert!(has("\"fuse\": \"aimed-nearest\""), "{report}");
     let args = "render field.npy -o s.exr --seed 3";
     let run = folder.run_str(args);
     let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";

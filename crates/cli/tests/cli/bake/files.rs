@@ -307,14 +307,12 @@ fn gpu_horizons_are_those_of_the_command_horizon() {
     done(&folder, "bake --scene scene.json -o out --what horizon --format npy,exr,ktx2");
     let (kept, baked) = (read(&folder.path("h.npy")), read(&folder.path("out/horizon.npy")));
     assert_eq!(kept.planes, baked.planes);
-    // By default, too, whose fuse is not that of `--method sweep` here.
+    // By default, too.
     let flags = "field.npy --cell 2,3 --azimuths 8";
     done(&folder, &format!("horizon {flags} -o default.npy"));
-    done(&folder, &format!("horizon {flags} --method sweep -o sweep.npy"));
     done(&folder, &format!("bake {flags} -o default --what horizon --format npy"));
     let of = |name| read(&folder.path(name)).planes;
     assert_eq!(of("default.npy"), of("default/horizon.npy"));
-    assert_ne!(of("default.npy"), of("sweep.npy"));
     let layers = read(&folder.path("out/horizon.exr"));
     assert_eq!(layers.names[1], "azimuth_045.0");
     assert_eq!(layers.planes, baked.planes);

@@ -60,7 +60,7 @@ fn places_are_distinct_and_complete() {
         assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
     }
     let default = all.iter().find(|p| p.quality == start).unwrap();
-    let flags = "`lines 1` `fuse aimed-nearest` `precision f32` `azimuths 64`";
+    let flags = "`lines 1` `fuse aimed-around` `precision f32` `azimuths 32`";
     assert_eq!(default.flags(&ladders), flags);
     let brute: Vec<&Place> =
         all.iter().filter(|p| p.quality.method == Method::BruteForce).collect();
@@ -113,11 +113,11 @@ fn ladders_have_their_range_and_default() {
         all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
     let expected = [
         ("sweep", "`lines 1`"),
-        ("fuse", "`fuse aimed-nearest`"),
+        ("fuse", "`fuse aimed-around`"),
         ("precision", "`precision f32`"),
         ("level step", "`level_step 4`"),
         ("level offset", "`level_offset 2`"),
-        ("azimuths", "`azimuths 64`"),
+        ("azimuths", "`azimuths 32`"),
         ("sun azimuths", "`sun_azimuths 8`"),
         ("table elevations", "`table_elevations 256`"),
         ("basis", "`basis table`"),
