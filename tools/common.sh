@@ -7,7 +7,7 @@
 # shellcheck disable=SC2034 # used where this is sourced
 demo_field=(assets/mt_washington_256.png --cell "66,92.6")
 # shellcheck disable=SC2034
-demo_scene=("${demo_field[@]}" --env assets/sky_512x256.hdr --sun "300,10,0.53,15" --azimuths 64)
+demo_scene=("${demo_field[@]}" --env assets/sky_512x256.hdr --sun "300,10,0.53,15")
 
 # Non-root users of Debian have no sbin on their PATH, and ldconfig lives there.
 PATH=$PATH:/usr/sbin:/sbin

@@ -292,19 +292,22 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     uvec4 after_back = mix(uvec4(0), lines.after, lines.has_after);
     if (FUSE == FUSE_AIMED || FUSE == FUSE_AIMED_AROUND) {
         ivec4 y = q.lane * CELL;
-        uvec4 before_far = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
-        uvec4 after_far = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
         met = first_crossings(azimuth, q, lanes, steps);
-        met = higher(met, surface_at(azimuth, q, y, before_far, lanes, steps));
-        met = higher(met, surface_at(azimuth, q, y, after_far, lanes, steps));
-        if (FUSE == FUSE_AIMED_AROUND) {
-            bvec4 is_past_half = greaterThan(offset, ivec4(spacing / 2));
-            bvec4 takes_after = bvec4(uvec4(lines.has_after) & (uvec4(is_past_half) | uvec4(not(lines.has_before))));
-            ivec4 nearer = ivec4(mix(before_back, after_back, takes_after));
-            ivec4 other = ivec4(mix(after_back, before_back, takes_after));
-            if (any(lessThan(met.slope, enough))) {
-                raise_beside(azimuth, q, nearer, other, at.step, lanes, steps, met);
-            }
+        if (FUSE == FUSE_AIMED) {
+            uvec4 before_far = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
+            uvec4 after_far = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
+            met = higher(met, surface_at(azimuth, q, y, before_far, lanes, steps));
+            return higher(met, surface_at(azimuth, q, y, after_far, lanes, steps));
+        }
+        bvec4 is_past_half = greaterThan(offset, ivec4(spacing / 2));
+        bvec4 takes_after = bvec4(uvec4(lines.has_after) & (uvec4(is_past_half) | uvec4(not(lines.has_before))));
+        uvec4 nearer = mix(before_back, after_back, takes_after);
+        uvec4 other = mix(after_back, before_back, takes_after);
+        uvec4 other_far = mix(uvec4(0), other, greaterThan(other, uvec4(1)));
+        met = higher(met, surface_at(azimuth, q, y, other_far, lanes, steps));
+        // `raise_beside` also tests the step of the nearer line's occluder.
+        if (any(lessThan(met.slope, enough))) {
+            raise_beside(azimuth, q, ivec4(nearer), ivec4(other), at.step, lanes, steps, met);
         }
         return met;
     }

@@ -7,8 +7,8 @@ words! {
     pub enum Method = Auto {
         /// The planner's choice: a sweep, and exact shadows of suns
         ///
-        /// Where `lines`, `fuse` and `precision` have their defaults, suns and key lights that span at most 5 degrees of
-        /// elevation have exact shadows.
+        /// Where `lines` and `precision` have their defaults, suns and key lights that span at most 5 degrees of elevation
+        /// have exact shadows.
         Auto = "auto",
         /// Hull sweeps along lines
         ///

@@ -383,7 +383,7 @@ fn fuses_that_store_occluders_take_edits() {
     assert_eq!(edits(Fuse::Slopes), 0);
 }
 
-/// Sky, key lights and horizons have the fuse of the quality, and edits grow by what it reads.
+/// Sky, key lights and horizons use the quality's fuse. An edit grows by as many grid points as that fuse reads.
 #[test]
 fn all_sweeps_have_one_fuse() {
     let key = KeyLight {

@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Limits, Pass, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Border, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene, Sun, Surface,
+    Border, Fuse, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
 };
 
 use crate::flat;
@@ -46,12 +46,16 @@ fn suns_and_narrow_keys_have_shadow_heights() {
     for other in [
         Quality { method: Method::Sweep, ..quality },
         Quality { lines: Lines::HalfCell, ..quality },
-        Quality { fuse: Fuse::Aimed, ..quality },
+        Quality { precision: Precision::Packed, ..quality },
     ] {
         let plan = picture(&scene, &other, &limits);
         assert_eq!(sweeps(&plan), hulls, "{other:?}");
-        assert!(!plan.notes.iter().any(|n| n.contains("hull")), "{:?}", plan.notes);
+        // `method sweep` gives no note.
+        let is_said = plan.notes.iter().any(|n| n.contains("by hull sweeps"));
+        assert_eq!(is_said, other.method == Method::Auto, "{:?}", plan.notes);
     }
+    let other = Quality { fuse: Fuse::Aimed, ..quality };
+    assert_eq!(sweeps(&picture(&scene, &other, &limits)), by_default);
 }
 
 /// A field one grid point wide has no cells to walk over, unless it repeats: a line of suns is swept by hulls.

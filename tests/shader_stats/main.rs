@@ -106,7 +106,7 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
         ("bounces by brute force", lit(sky.clone()), bounced(BounceEngine::BruteForce, 1)),
         ("specular", shiny(Lights { suns: vec![sun], ..sky.clone() }), base),
         ("environment by SH", lit(map), Quality { basis: Basis::Sh, ..base }),
-        ("aimed-around", lit(sky.clone()), Quality { fuse: Fuse::AimedAround, ..base }),
+        ("aimed-nearest", lit(sky.clone()), Quality { fuse: Fuse::AimedNearest, ..base }),
         ("packed", lit(sky.clone()), Quality { precision: Precision::Packed, ..base }),
         // With up to 256 steps the hull of exact lines is in private memory.
         (

@@ -259,8 +259,8 @@ pub struct RenderArgs {
     pub layers: Vec<Layer>,
     /// Factor on the radiance of a .png. Default: automatic
     ///
-    /// By default the 99th percentile of the picture's luminance becomes 0.8, or less where no ground has the lightest colour of
-    /// --tint. Then all pictures have the same tone curve:
+    /// By default the 99th percentile of the picture's luminance becomes 0.8. It becomes less where no ground has the lightest
+    /// colour of --tint, and a tenth where the only light is a --sun below the horizontal. Then all pictures have the same tone curve:
     /// linear up to 0.8, compressed towards 1 above, sRGB-encoded. Give a factor to pictures that you compare.
     #[arg(
         long,

@@ -103,6 +103,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         (_, Some("pyramid"), _) => "with --method pyramid".into(),
         (_, Some("brute-force"), _) => "with --method brute-force".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
+        (_, Some("auto"), _) => "where all light has exact shadows".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),
         ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),
         _ => "with --border periodic: they do not divide this field".into(),

@@ -242,7 +242,7 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
 }
 
-/// Brightness of a picture of the night over that of others, where the exposure is automatic.
+/// Brightness of a night picture relative to other pictures, with automatic exposure.
 const NIGHT_SHARE: f64 = 0.1;
 
 /// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without

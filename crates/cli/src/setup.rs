@@ -267,7 +267,7 @@ fn is_dark(lights: &Lights) -> bool {
     !has_sky && !has_others && lights.near().next().is_none()
 }
 
-/// Whether a scene has no light but the sky of a night.
+/// Whether the only light is the faint sky that replaces a set sun.
 pub fn is_night(args: &LightArgs, lights: &Lights) -> bool {
     let has_sky = matches!(args.sky, Some(SkyArg::Uniform(_))) || lights.environment.is_some();
     !has_sky

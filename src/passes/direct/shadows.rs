@@ -7,7 +7,7 @@ use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
 use crate::passes::sweep::{Sweep, has_sweep_defaults, shadows_by_one_line};
 use crate::passes::sweeping::Sweeping;
-use crate::scene::{Border, HeightField, KeyLight, Quality};
+use crate::scene::{Border, HeightField, KeyLight, Method, Quality};
 
 /// What the passes of suns share, besides the lattices.
 pub(crate) struct Shadows {
@@ -29,7 +29,7 @@ const TEXEL_BYTES: u64 = 2 + 1 + 8;
 const BUFFERS_BYTES: u64 = 8;
 
 impl Shadows {
-    /// Whether suns may use shadow heights; otherwise why not, where the quality leaves it open.
+    /// Whether suns may use shadow heights; otherwise the reason, with `method auto`.
     pub(crate) fn suit(
         quality: &Quality,
         sweep: &Sweep,
@@ -38,8 +38,13 @@ impl Shadows {
         (limits, used_bytes): (&Limits, u64),
     ) -> Result<(), Option<String>> {
         let size = [field.cols() as u32, field.rows() as u32];
-        if !has_sweep_defaults(quality) || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
+        if quality.method != Method::Auto || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1)
+        {
             return Err(None);
+        }
+        if !has_sweep_defaults(quality) {
+            let reason = "exact shadows need the defaults of `lines` and `precision`";
+            return Err(Some(reason.into()));
         }
         let maxima = BlockLevels::of(size, border).maxima_size();
         if maxima.iter().any(|n| *n > limits.image_side) {

@@ -159,9 +159,9 @@ const GPU_PRIVATE_ENTRIES: u32 = 1024;
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
-/// Whether a quality leaves the choice of exact shadows to the planner: it has the defaults of sweeps.
+/// Whether a quality leaves the choice of exact shadows to the planner. They do not depend on the fuse.
 pub(crate) fn has_sweep_defaults(quality: &Quality) -> bool {
-    let of = |q: &Quality| (q.method, q.lines, q.fuse, q.precision);
+    let of = |q: &Quality| (q.method, q.lines, q.precision);
     of(quality) == of(&Quality::default())
 }
 

@@ -276,7 +276,13 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("low lights, open", low(Border::Open), quality, false, false),
         picture("low lights, periodic", low(Border::Periodic), quality, false, false),
         of_device,
-        picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
+        picture(
+            "grey",
+            grey,
+            Quality { method: Method::Sweep, fuse: Fuse::AimedNearest, ..quality },
+            false,
+            true,
+        ),
         picture("sphere lights", sphere_lights.clone(), quality, true, false),
         picture(
             "sphere lights in one sum",

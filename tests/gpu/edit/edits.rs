@@ -153,11 +153,15 @@ fn edits_give_the_bits_of_all() {
     let (plane, open) = (Border::Plane, Border::Open);
     let cases = [
         (rough(70, 90, [30.0, 20.0]), plane, base),
-        (dome(150, 140), plane, Quality { fuse: Fuse::Aimed, ..base }),
+        (dome(150, 140), plane, Quality { method: Method::Sweep, fuse: Fuse::Aimed, ..base }),
         (plateaus(61, 50), open, Quality { fuse: Fuse::Own, lines: Lines::HalfCell, ..base }),
         (rough(50, 83, [1.0, 3.0]), open, Quality { lines: Lines::TwoCells, ..base }),
         (rough(33, 9, [2.0, 2.0]), plane, Quality { precision: Precision::Packed, ..base }),
-        (rough(61, 47, [2.0, 1.0]), open, Quality { fuse: Fuse::AimedAround, ..base }),
+        (
+            rough(61, 47, [2.0, 1.0]),
+            open,
+            Quality { method: Method::Sweep, fuse: Fuse::AimedNearest, ..base },
+        ),
         (
             plateaus(50, 64),
             plane,

@@ -122,8 +122,18 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
     scene.lights.suns = vec![sun(0.0), sun(0.02)];
     let qualities = [
         Quality { method: Method::BruteForce, ..Quality::default() },
-        Quality { hull: Hull::Shared, fuse: Fuse::Own, ..Quality::default() },
-        Quality { hull: Hull::OccluderList, fuse: Fuse::Slopes, ..Quality::default() },
+        Quality {
+            method: Method::Sweep,
+            hull: Hull::Shared,
+            fuse: Fuse::Own,
+            ..Quality::default()
+        },
+        Quality {
+            method: Method::Sweep,
+            hull: Hull::OccluderList,
+            fuse: Fuse::Slopes,
+            ..Quality::default()
+        },
         Quality { lines: Lines::TwoCells, fuse: Fuse::Aimed, ..Quality::default() },
         Quality { lines: Lines::HalfCell, fuse: Fuse::Nearest, ..Quality::default() },
     ];

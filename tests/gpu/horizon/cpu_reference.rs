@@ -57,7 +57,7 @@ pub(crate) fn sweeps() -> Vec<Case> {
             "aimed-nearest, lines that follow lanes",
             rough(23, 37, 9),
             Border::Open,
-            Quality { method: Method::Sweep, ..base },
+            Quality { method: Method::Sweep, fuse: Fuse::AimedNearest, ..base },
             true,
         ),
         Case {

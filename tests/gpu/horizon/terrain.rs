@@ -68,8 +68,7 @@ fn errors(
     ((0..texels).map(mean).collect(), worst)
 }
 
-/// Every published figure of the defaults (skies: `aimed-nearest`, horizons: `aimed-around`) and their neighbours holds, within the standard error of so few texels; the
-/// comparison fails for a form with several times the error.
+/// The published errors of the default and its neighbours hold, within three standard errors. A form with three times the error fails.
 #[test]
 fn horizons_of_bundled_terrain_match_the_published_errors() {
     const TEXELS: usize = 200;
@@ -120,7 +119,10 @@ fn the_sky_over_bundled_terrain_is_the_oracles() {
     const TEXELS: usize = 400;
     let mut gpu = Device::new();
     let field = bundled();
-    let picture = gpu.picture(&under_sky(field.clone(), Border::Plane), &Quality::default());
+    // `aimed-around` has errors at too few texels to estimate from 400.
+    let fuse = Fuse::AimedNearest;
+    let quality = Quality { azimuths: 64, fuse, ..Quality::default() };
+    let picture = gpu.picture(&under_sky(field.clone(), Border::Plane), &quality);
     let oracle = Oracle::new(&field, Border::Plane);
     let mut next = random(2);
     let picks: Vec<usize> = (0..TEXELS).map(|_| (next() * 65_536.0) as usize).collect();

@@ -22,7 +22,7 @@ use crate::common::{Outcome, cells, head, inputs, xorshift};
 
 /// The median of three draws after the first.
 const RUNS: usize = 3;
-/// Of horizons. With fewer, the error of sky light would be less that of the horizons.
+/// Of horizons. With fewer, the error of sky light comes more from their number than from the horizons.
 const AZIMUTHS: u32 = 64;
 /// Grid points, rows and columns.
 type Picks = [[usize; 2]];

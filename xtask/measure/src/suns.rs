@@ -65,7 +65,7 @@ pub fn run(mut args: Args) -> Outcome {
         "| field | border | elevation ° | sweep % | aimed-around % | default % | shadow-height map % | sweep ms | time of aimed-around | time of the default | time of the shadow-height map |",
     );
     let default = Quality::default();
-    let sweep = Quality { method: Method::Sweep, ..default };
+    let sweep = Quality { method: Method::Sweep, fuse: Fuse::AimedNearest, ..default };
     let around = Quality { fuse: Fuse::AimedAround, ..sweep };
     for Terrain { name, field, .. } in &terrains {
         for (border, elevation) in BORDERS.into_iter().flat_map(|b| ELEVATIONS.map(|e| (b, e))) {

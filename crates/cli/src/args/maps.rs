@@ -59,7 +59,7 @@ const OPENNESS_HELP: &str = "\
 The mean over --azimuths of the zenith angle of the horizon: 90 degrees on flat ground, less in a valley, more on a \
 summit. Azimuths in which a grid point at the edge has no ground are left out.
 
-Differences from RVT: horizons have any distance (RVT: 10 pixels); there are 64 azimuths (RVT: 16).
+Differences from RVT: horizons have any distance (RVT: 10 pixels); there are 32 azimuths (RVT: 16).
 
 Examples:
   ridgelight openness dem.tif -o openness.tif

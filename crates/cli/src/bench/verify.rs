@@ -482,7 +482,9 @@ pub mod tests {
         assert_eq!((field.rows(), cols), (PIECE, PIECE));
         let sky = |field: &HeightField, col: fn(usize) -> usize| -> Vec<f64> {
             let oracle = Oracle::new(field, Border::Plane);
-            let at = |p: &usize| light::sky_of(&oracle, p / cols, col(p % cols), 64);
+            let at = |p: &usize| {
+                light::sky_of(&oracle, p / cols, col(p % cols), quality.azimuths as usize)
+            };
             verifier.ground_truth.places.iter().map(at).collect()
         };
         let judged = |light: &[f64]| {

@@ -75,7 +75,7 @@ fn middle(field: &HeightField, halvings: u32) -> Option<(HeightField, [usize; 2]
     Some((part, [top, left]))
 }
 
-/// Memory of `render -o picture.png` with its default light, tint and settings, and so many bounces.
+/// Memory of `render -o picture.png` with its default light, tint and settings, with this number of bounces.
 pub fn bytes_of(field: &HeightField, bounces: u32, limits: &Limits) -> Result<u64> {
     bytes(&scene(field)?, bounces, limits)
 }

@@ -27,6 +27,7 @@ mod files {
     mod python;
     mod table;
     mod two_runs;
+    mod validators;
 }
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;

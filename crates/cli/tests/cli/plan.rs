@@ -25,7 +25,7 @@ fn text_names_passes_and_memory() {
     let folder = Folder::new();
     let text = planned(&folder, "text");
     for said in
-        ["lavapipe", "4 × 3", "azimuths 64", "horizon_sweep sky", "shadow_shade sun1", "why"]
+        ["lavapipe", "4 × 3", "azimuths 32", "horizon_sweep sky", "shadow_shade sun1", "why"]
     {
         assert!(text.contains(said), "{said:?} in\n{text}");
     }

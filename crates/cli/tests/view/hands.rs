@@ -89,7 +89,7 @@ fn gpu_two_windows_save_the_same_bytes() {
 fn gpu_settings_match_the_command_line() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "frames 2\nkey tab\nkey ,\nkey ,\ntext azimuths.txt\nkey tab\nkey tab\nkey tab\nkey tab\nkey ,\n\
-        key ,\nkey ,\ntext lines.txt\nkey tab\nkey .\nkey shift+tab\nframes 2\nkey h\nkey h\nframes 1\nscreenshot fine.png\n\
+        key ,\nkey ,\ntext lines.txt\nkey tab\nkey ,\nkey shift+tab\nframes 2\nkey h\nkey h\nframes 1\nscreenshot fine.png\n\
         scene fine.json\nkey h\nkey tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey .\ntext idle.txt\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
     let text = |name: &str| std::fs::read_to_string(folder.0.path().join(name)).unwrap();

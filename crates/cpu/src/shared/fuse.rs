@@ -150,13 +150,14 @@ pub fn fused(swept: &Swept, march: &March, (lane, step): (i32, i32)) -> Found {
     };
 
     let first = || first_crossings(march, (lane, step), own);
-    let both_aimed = || higher(higher(first(), aimed(before_texel)), aimed(after_texel));
-    let nearest = if takes_after { after_texel } else { before_texel };
+    let (nearest, farther) =
+        if takes_after { (after_texel, before_texel) } else { (before_texel, after_texel) };
     let (a, b) = match fuse {
         Fuse::Nearest => return slope(nearest),
         Fuse::AimedNearest => return higher(first(), aimed(nearest)),
-        Fuse::Aimed => return both_aimed(),
-        Fuse::AimedAround => return higher(both_aimed(), around()),
+        Fuse::Aimed => return higher(higher(first(), aimed(before_texel)), aimed(after_texel)),
+        // `around` already tests the step of the nearer line's occluder.
+        Fuse::AimedAround => return higher(higher(first(), aimed(farther)), around()),
         Fuse::Own => (
             surface_at(march, after, back(after_texel), step, own),
             surface_at(march, before, back(before_texel), step, own),

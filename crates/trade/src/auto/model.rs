@@ -25,7 +25,8 @@ pub enum Part {
 /// All parts, in the order of the fit.
 pub const PARTS: [Part; 4] = [Part::Geometry, Part::Azimuths, Part::Table, Part::Strips];
 
-/// ln error = bias + weights · features - power · ln(setting / its default).
+/// ln error = bias + weights · features - power · ln(setting / its value in the fit). The fit used 64 azimuths,
+/// `aimed-nearest` and otherwise the defaults.
 pub(super) struct Fitted {
     pub bias: f64,
     pub weights: [f64; FEATURES],
@@ -35,10 +36,10 @@ pub(super) struct Fitted {
 }
 
 impl Part {
-    /// ln of how much finer than the default a setting is, in the part's own measure. ln of the
+    /// ln of a setting's fineness relative to the fit, in the part's own measure. ln of the
     /// error falls by this times a fitted power.
     pub fn fineness(self, quality: &Quality) -> f64 {
-        let finer = |value: u32, default: u32| (f64::from(value) / f64::from(default)).ln();
+        let finer = |value: u32, fitted: u32| (f64::from(value) / f64::from(fitted)).ln();
         match self {
             Part::Geometry => {
                 if quality.method == Method::Auto {
@@ -113,7 +114,7 @@ const ALL: usize = PARTS.len() + bounced::PARTS;
 /// frames.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// ln of each part at the defaults, none where the scene does not have it.
+    /// ln of each part at the settings of the fit, none where the scene does not have it.
     logs: [Option<f64>; ALL],
     covariance: [[f64; ALL]; ALL],
     bounced: Option<BouncedLight>,

@@ -9,7 +9,7 @@ use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
-use ridgelight::scene::{Basis, Bounces, Lines, Method, Quality, Scene, setting};
+use ridgelight::scene::{Basis, Bounces, Fuse, Lines, Method, Quality, Scene, setting};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
 
@@ -48,6 +48,7 @@ fn coarse() -> Quality {
         azimuths: 8,
         sun_azimuths: 2,
         lines: Lines::FourCells,
+        fuse: Fuse::AimedNearest,
         table_elevations: 64,
         subsample: 2,
         bounces: Bounces { azimuths: 8, ..Bounces::default() },

@@ -34,7 +34,7 @@ pub struct Traced {
 pub fn all() -> Vec<Method> {
     let base = Quality { azimuths: 16, sun_azimuths: 32, ..Quality::default() };
     let pyramid = Quality { method: scene::Method::Pyramid, ..base };
-    let fused = |fuse| Quality { fuse, ..base };
+    let fused = |fuse| Quality { method: scene::Method::Sweep, fuse, ..base };
     let spaced = |lines, fuse| Quality { lines, fuse, ..base };
     let kept = |precision, fuse| Quality { precision, fuse, ..base };
     let soft = |sh_order, subsample| Quality { basis: Basis::Sh, sh_order, subsample, ..base };
@@ -42,10 +42,11 @@ pub fn all() -> Vec<Method> {
         ("brute", Quality { method: scene::Method::BruteForce, ..base }),
         ("exact", Quality { lines: Lines::Exact, ..base }),
         ("auto", base),
-        ("1, aimed", Quality { method: scene::Method::Sweep, ..fused(Fuse::Aimed) }),
+        ("1, aimed", fused(Fuse::Aimed)),
         ("1, own, list", Quality { hull: Hull::OccluderList, ..fused(Fuse::Own) }),
         ("1, slopes, shared", Quality { hull: Hull::Shared, ..fused(Fuse::Slopes) }),
         ("1, nearest, private", Quality { hull: Hull::Private, ..fused(Fuse::Nearest) }),
+        ("1, aimed-nearest", fused(Fuse::AimedNearest)),
         ("1, aimed-around", fused(Fuse::AimedAround)),
         ("1/4, aimed", spaced(Lines::QuarterCell, Fuse::Aimed)),
         ("1/2, aimed-nearest", spaced(Lines::HalfCell, Fuse::AimedNearest)),

@@ -42,7 +42,7 @@ impl<'a> Measuring<'a> {
     fn of(gpu: &mut Headless, scene: &'a Scene) -> Result<Self> {
         let dense = Quality {
             lines: Lines::QuarterCell,
-            fuse: Fuse::Aimed,
+            fuse: Fuse::AimedAround,
             azimuths: 1024,
             sun_azimuths: 128,
             table_elevations: 4096,

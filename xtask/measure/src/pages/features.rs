@@ -19,7 +19,7 @@ const MODES: [&str; 17] = [
     "environment by SH, order 4 | approximate | soft_converge | {exact horizons@2} %",
     "sun, 0.53° wide, 8 slices: the default | exact but for its slices | suns | at most {max@5} % against brute force in the \
      same slices",
-    "the same sun, `--method sweep` | approximate | suns | {Mt Washington, 256²;plane;12@3} % at 12° over a mountain",
+    "the same sun, `--method sweep --fuse aimed-nearest` | approximate | suns | {Mt Washington, 256²;plane;12@3} % at 12° over a mountain",
     "key light, 3 slices | exact but for its slices | shadow_edge | {after 3 slices } of the unshadowed light",
     "sphere light, 8 slices | exact but for its slices | lights | at most {max@4} %",
     "sphere light by SH, order 4 | approximate | lights_cones | {;surface;across;32@6} %",
@@ -29,7 +29,7 @@ const MODES: [&str; 17] = [
      {Mt Rainier;sky;0.8;3;brute-force@6} %), {Mt Rainier;sky;0.8;3;brute-force@7} % of all light",
     "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (noise \
      {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
-    "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;64;slices@4}, {20;64;slices@4}, {1000;64;slices@4} %",
+    "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;32;slices@4}, {20;32;slices@4}, {1000;32;slices@4} %",
     "indirect Phong specular, exponent 1, 5, 20 | approximate | gloss | {0;0.9;1;vector;4@5}, {0;0.9;5;vector;4@5}, \
      {0;0.9;20;vector;4@5} %",
     "edit of a rectangle | exact | edits | the same bits as a whole frame",

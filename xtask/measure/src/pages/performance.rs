@@ -22,7 +22,7 @@ pub fn performance() -> Result<String> {
     let figures = Figures::read("performance")?;
     let (frame, forms) = (&figures.all["reports"]["frame"], &figures.all["reports"]["forms"]);
     let mut out = format!(
-        "## One frame\n\n1024 × 1024 texels, 64 azimuths, uniform sky, a fractal. Each pass alone; {}.\n\n\
+        "## One frame\n\n1024 × 1024 texels, 64 azimuths, `--fuse aimed-nearest`, uniform sky, a fractal. Each pass alone; {}.\n\n\
          | pass | ms, median | 10th to 90th percentile | cold caches | of the copy's rate |\n|---|---|---|---|---|\n",
         command("frame")
     );

@@ -32,8 +32,11 @@ struct Point {
 
 fn candidates() -> Vec<(usize, String, Quality)> {
     let base = Quality { method: Method::Sweep, ..Quality::default() };
-    let sweeps =
-        [(Lines::FourCells, base.fuse), (Lines::Cell, base.fuse), (Lines::Cell, Fuse::AimedAround)];
+    let sweeps = [
+        (Lines::FourCells, Fuse::AimedNearest),
+        (Lines::Cell, Fuse::AimedNearest),
+        (Lines::Cell, Fuse::AimedAround),
+    ];
     let sweeps = sweeps.map(|(lines, fuse)| {
         let name = format!("lines {} {}", lines, fuse);
         (0, name, Quality { lines, fuse, ..base })

@@ -118,7 +118,7 @@ fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]
     let dense = Quality {
         method: Method::Sweep,
         lines: Lines::QuarterCell,
-        fuse: Fuse::Aimed,
+        fuse: Fuse::AimedAround,
         ..Quality::default()
     };
     let brute = Quality { method: Method::BruteForce, ..dense };

@@ -287,7 +287,7 @@ fn first_sun(scene: &Scene) -> Option<(usize, &Sun)> {
 }
 
 /// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
-/// as some need another method. The sun has one azimuth; bounces and the faster fuse are of the sky's light only.
+/// as some need another method. The sun has one azimuth and no bounces; all other light uses `aimed-nearest`, which is faster.
 fn coarser(quality: &Quality, of: usize) -> Quality {
     let (count, fuse) = match of {
         SUN => (0, quality.fuse),

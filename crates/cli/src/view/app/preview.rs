@@ -49,8 +49,8 @@ struct Rates {
 }
 
 /// Before anything was measured: lavapipe on two cores; a GPU.
-const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 1e5, 5.5e4] };
-const GPU_RATES: Rates = Rates { full: 2e7, grids: [2e7; GRIDS] };
+const CPU_RATES: Rates = Rates { full: 5e4, grids: [1e5, 1e5, 5.5e4] };
+const GPU_RATES: Rates = Rates { full: 1e7, grids: [2e7; GRIDS] };
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

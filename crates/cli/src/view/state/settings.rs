@@ -146,7 +146,7 @@ mod tests {
             visited.extend(asked.first("method").map(str::to_owned));
         }
         assert_eq!(visited, ["sweep", "pyramid", "brute-force", "auto"]);
-        for _ in 0..4 {
+        for _ in 0..5 {
             assert!(settings.turn("azimuths", true, &mut asked).is_ok());
         }
         let Err(Refused(why)) = settings.turn("azimuths", true, &mut asked) else {

@@ -307,7 +307,7 @@ fn gpu_horizons_are_those_of_the_command_horizon() {
     done(&folder, "bake --scene scene.json -o out --what horizon --format npy,exr,ktx2");
     let (kept, baked) = (read(&folder.path("h.npy")), read(&folder.path("out/horizon.npy")));
     assert_eq!(kept.planes, baked.planes);
-    // By default, too.
+    // Also with the defaults.
     let flags = "field.npy --cell 2,3 --azimuths 8";
     done(&folder, &format!("horizon {flags} -o default.npy"));
     done(&folder, &format!("bake {flags} -o default --what horizon --format npy"));

@@ -13,7 +13,7 @@ const UTM: &[u8] = include_bytes!("../../../../../tests/files/gdal/utm.tif");
 /// The same, PixelIsPoint, with NAVD88 heights in feet as its vertical reference.
 const POINT: &[u8] = include_bytes!("../../../../../tests/files/gdal/utm_point_feet.tif");
 
-fn folder() -> Folder {
+pub fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("utm.tif", UTM);
     folder.write("point.tif", POINT);

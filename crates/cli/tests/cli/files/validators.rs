@@ -1,0 +1,96 @@
+//! Files by the validators of others, which `tools/test --part validators` installs into the folder that `VALIDATORS` names.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use super::gdal_inputs::tool;
+use super::geotiff::folder;
+use crate::needs_vulkan::done;
+use crate::{Folder, formats};
+
+/// The folder of the validators.
+fn validators() -> PathBuf {
+    std::env::var_os("VALIDATORS")
+        .map(PathBuf::from)
+        .expect("VALIDATORS: run tools/test --part validators")
+}
+
+/// Runs a program in the folder; returns what it prints, or its error.
+fn output(folder: &Folder, command: &mut Command) -> Result<String, String> {
+    let Output { status, stdout, stderr } =
+        command.current_dir(folder.path("")).output().expect("installed");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if status.success() { Ok(text(&stdout)) } else { Err(text(&stdout) + &text(&stderr)) }
+}
+
+fn rio_cogeo(folder: &Folder, file: &str) -> Result<String, String> {
+    let program = "import sys\n\
+        from rio_cogeo.cogeo import cog_validate\n\
+        is_valid, errors, warnings = cog_validate(sys.argv[1], strict=True)\n\
+        sys.exit(None if is_valid and not errors + warnings else str(errors + warnings))\n";
+    let mut command = Command::new("/usr/bin/python3");
+    command.env("PYTHONPATH", validators().join("pypi")).args(["-c", program, file]);
+    output(folder, &mut command)
+}
+
+/// rio-cogeo finds no error and no warning, with one tile or several, and refuses the same values in strips.
+#[test]
+#[ignore = "needs rio-cogeo and GDAL: tools/test --part validators"]
+fn rio_cogeo_accepts_maps() {
+    let folder = folder();
+    done(&folder, "hillshade utm.tif -o small.tif");
+    done(&folder, "horizon utm.tif --azimuths 4 --distances far.tif -o horizon.tif");
+    done(&folder, "bake utm.tif --what sky-view,bent-normal --azimuths 4 --format tif -o maps");
+    tool(&folder, "gdal_translate -q -outsize 1031 521 utm.tif large_input.tif");
+    done(&folder, "hillshade large_input.tif -o large.tif");
+    for file in ["small", "horizon", "far", "maps/sky_view", "maps/bent_normal", "large"] {
+        rio_cogeo(&folder, &format!("{file}.tif")).expect(file);
+    }
+    tool(&folder, "gdal_translate -q large.tif strips.tif");
+    let error = rio_cogeo(&folder, "strips.tif").unwrap_err();
+    assert!(error.contains("not tiled"), "{error}");
+}
+
+/// ktx-parse reads the format, size and mip levels of each texture. Each level has the length that its blocks need. A truncated file
+/// is refused.
+#[test]
+#[ignore = "needs ktx-parse: tools/test --part validators"]
+fn ktx_parse_reads_textures() {
+    let folder = Folder::new();
+    let heights: Vec<u8> =
+        (0..64 * 48_u32).flat_map(|i| ((i * 7919 % 97) as f32).to_le_bytes()).collect();
+    folder.write("field.npy", &formats::npy("<f4", false, "(48, 64)", &heights));
+    let maps = "bake field.npy --what sky-view,bent-normal --azimuths 4 --format ktx2";
+    for flags in ["-o plain", "-o blocks --mips --compress --quiet"] {
+        let run = folder.run_str(&format!("{maps} {flags}"));
+        assert_eq!(run.status, Some(0), "{flags}: {}", run.err);
+    }
+    let program = format!(
+        "import {{ readFileSync }} from 'node:fs';\n\
+        import {{ read }} from '{}';\n\
+        const found = read(new Uint8Array(readFileSync(process.argv[2])));\n\
+        const sizes = found.levels.map(level => level.levelData.byteLength);\n\
+        console.log(found.vkFormat, found.pixelWidth, found.pixelHeight, sizes.join(' '));\n",
+        validators().join("node_modules/ktx-parse/dist/index.mjs").display()
+    );
+    folder.write("read.mjs", program.as_bytes());
+    let read = |file: &str| output(&folder, Command::new("node").args(["read.mjs", file]));
+    // Numbers of VkFormat: R16_UNORM, R16G16B16A16_UNORM, BC4_UNORM, BC7_UNORM. Texels along a block's side, and its bytes.
+    for (file, format, block, bytes, levels) in [
+        ("plain/sky_view", 70, 1, 2, 1),
+        ("plain/bent_normal", 91, 1, 8, 1),
+        ("blocks/sky_view", 139, 4, 8, 7),
+        ("blocks/bent_normal", 145, 4, 16, 7),
+    ] {
+        let blocks = |level: u32| {
+            [64_u32, 48].map(|side| (side >> level).max(1).div_ceil(block)).iter().product::<u32>()
+        };
+        let sizes = (0..levels).map(|level| (blocks(level) * bytes).to_string());
+        let wanted = format!("{format} 64 48 {}\n", sizes.collect::<Vec<_>>().join(" "));
+        assert_eq!(read(&format!("{file}.ktx2")), Ok(wanted), "{file}");
+    }
+    let whole = std::fs::read(folder.path("blocks/sky_view.ktx2")).unwrap();
+    folder.write("cut.ktx2", &whole[..whole.len() - 100]);
+    let error = read("cut.ktx2").unwrap_err();
+    assert!(error.contains("RangeError"), "{error}");
+}
