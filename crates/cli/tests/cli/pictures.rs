@@ -78,21 +78,23 @@ fn gpu_level_ground_is_not_white() {
     }
 }
 
-/// The printed flags give the same picture.
+/// The printed flags give the same picture, as a map and before a camera.
 #[test]
 fn gpu_default_light_is_that_of_its_flags() {
     let folder = Folder::new();
     let input = write(&folder, "city.npy", &terrain::city(64).unwrap());
-    let run = succeeded(&folder, &format!("render {input} -o default.png"));
-    let line = |name: &str| {
-        let line = run.out.lines().find_map(|line| line.strip_prefix(name)).unwrap();
-        line.split(" (").next().unwrap().trim().to_owned()
-    };
-    let flags = format!("{} {}", line("Light: "), line("Picture: "));
-    succeeded(&folder, &format!("render {input} {flags} -o asked.png --quiet"));
-    let [default, asked] =
-        ["default.png", "asked.png"].map(|name| image::open(folder.path(name)).unwrap().to_rgb8());
-    assert!(default == asked, "{flags}");
+    for view in ["", " --camera west --size 96x54"] {
+        let run = succeeded(&folder, &format!("render {input}{view} -o default.png"));
+        let line = |name: &str| {
+            let line = run.out.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+            line.split(" (").next().unwrap().trim().to_owned()
+        };
+        let flags = format!("{} {}{view}", line("Light: "), line("Picture: "));
+        succeeded(&folder, &format!("render {input} {flags} -o asked.png --quiet"));
+        let [default, asked] = ["default.png", "asked.png"]
+            .map(|name| image::open(folder.path(name)).unwrap().to_rgb8());
+        assert!(default == asked, "{flags}");
+    }
 }
 
 /// A level field of albedo 1 under a sky of radiance 1 has radiance 1: 0.8 at any exposure that is not given.

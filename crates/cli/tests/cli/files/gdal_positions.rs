@@ -23,6 +23,37 @@ fn tiles_of(folder: &Folder, extra: &str) -> [&'static str; 4] {
     names
 }
 
+/// `info` states the reference system and the extent that GDAL states: projected, geographic, and none.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_and_info_state_the_same_reference_system_and_extent() {
+    let folder = Folder::new();
+    folder.write("plain.asc", grid([8, 6], [500_000.0, 4_900_000.0], 30.0, 1).as_bytes());
+    for (epsg, place) in [
+        (Some(32618), ""),
+        (Some(2056), ""),
+        (Some(3857), ""),
+        (Some(4326), "-a_ullr -71 45 -70.92 44.94"),
+        (None, ""),
+    ] {
+        let srs = epsg.map_or(String::new(), |epsg| format!("-a_srs EPSG:{epsg}"));
+        tool(&folder, &format!("gdal_translate -q {srs} {place} plain.asc at.tif"));
+        let run = folder.run_without_driver(&["info", "at.tif", "--json", "-"]);
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let ours: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+        let gdal = gdalinfo(&folder.path("at.tif"));
+        assert_eq!(gdal["stac"]["proj:epsg"], json!(epsg), "{epsg:?}");
+        let code = epsg.map(|epsg| format!("EPSG:{epsg}"));
+        assert_eq!(ours["crs"], json!(code), "{epsg:?}");
+        let [low, high] = ["lowerLeft", "upperRight"].map(|at| &gdal["cornerCoordinates"][at]);
+        for (k, edge) in [&low[0], &low[1], &high[0], &high[1]].into_iter().enumerate() {
+            // gdalinfo prints seven decimals.
+            let error = ours["extent"][k].as_f64().unwrap() - edge.as_f64().unwrap();
+            assert!(error.abs() < 1e-7, "{epsg:?}: edge {k}: {error}");
+        }
+    }
+}
+
 /// GDAL's mosaic of the same files, and of a box of it: same values, voids and positions.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
