@@ -13,7 +13,7 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 
-/// The most azimuths across a key light: the maximum of the setting `sun_azimuths`.
+/// The most azimuths that specular asks for across a key light: the maximum of the setting `sun_azimuths`.
 const MOST_AZIMUTHS: u32 = 256;
 
 /// The lights that are not dark.
@@ -271,7 +271,7 @@ impl<'a> ActiveLights<'a> {
 
     /// Azimuths across a key light for a setting of `sun_azimuths`, which specular may raise up to [`MOST_AZIMUTHS`].
     fn key_azimuths(&self, key: &KeyLight, setting: u32) -> u32 {
-        setting.max(self.specular_azimuths(key).min(MOST_AZIMUTHS))
+        key.slices(setting).max(self.specular_azimuths(key).min(MOST_AZIMUTHS))
     }
 
     /// Azimuths across a key light, each at most half as wide as the surface's narrowest lobe, whose standard deviation is
@@ -308,7 +308,7 @@ impl<'a> ActiveLights<'a> {
                 notes.push(format!(
                     "key {number}: {count} azimuths, the maximum; specular of exponents above {n:.0} needs more"
                 ));
-            } else if count > quality.sun_azimuths {
+            } else if count > key.slices(quality.sun_azimuths) {
                 notes.push(format!(
                     "key {number}: {count} azimuths, each at most half as wide as the lobe"
                 ));

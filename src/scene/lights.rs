@@ -136,7 +136,7 @@ impl SphereLight {
     /// Vertical slices for a setting: first where the sphere is narrow from a texel, then where it surrounds the texel.
     ///
     /// Narrow: the setting, but at most eight per cell of the sphere's width, as the surface is flat within a cell; at
-    /// least 4. Surrounding: eight times the setting. At the default this equals the azimuths of a sky.
+    /// least 4. Surrounding: eight times the setting. At the default these are twice the azimuths of a sky.
     pub fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
         let cells_wide = 2.0 * self.radius_m / cell_m[0].min(cell_m[1]);
         let most = (8.0 * cells_wide).ceil().clamp(4.0, 1e4) as u32;
@@ -202,11 +202,6 @@ impl Lights {
     /// Only the lights near the field.
     pub fn near_alone(&self) -> Self {
         Self { sphere_lights: self.sphere_lights.clone(), ..Self::default() }
-    }
-
-    /// All but the lights near the field.
-    pub fn without_near(&self) -> Self {
-        Self { sphere_lights: Vec::new(), ..self.clone() }
     }
 
     /// The lights near the field moved by so much, east and north.

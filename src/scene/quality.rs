@@ -26,9 +26,10 @@ settings! {
 
         /// Slices across a sun, key light or sphere light, 1 to 256
         ///
-        /// Fewer show steps in soft shadows; more take time in proportion. A wide light needs more.
+        /// Fewer show steps in soft shadows; more take time in proportion. A wide sun needs more.
         ///
-        /// A sphere light that looks wide gets up to eight times as many, one that is narrower than cells fewer.
+        /// A key light wider than 25° gets more in proportion to its width, up to four times as many. A sphere light that looks
+        /// wide gets up to eight times as many, one that is narrower than cells fewer.
         Advanced "sun_azimuths" sun_azimuths: u32 = 8, Values::Whole(1..=256);
 
         /// Basis of an environment's light

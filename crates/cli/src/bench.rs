@@ -92,7 +92,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     })?;
     if !quiet {
         crate::say!("{device}, {driver}");
-        setup::say_light(&args.lights, &scene);
+        setup::say_light(&args.lights, &scene, None);
         crate::say!("verified: {found}");
         crate::say!("peak rates: {}", peaks::text(&peaks));
         plan.notes

@@ -78,7 +78,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
             traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
             gpu.report().name
         );
-        setup::say_light(&args.lights, &scene);
+        setup::say_light(&args.lights, &scene, None);
         if let Some(wanted) = missed {
             let least = 2 * REFERENCE_BATCH;
             let whole = match paths == args.spp {

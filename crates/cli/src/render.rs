@@ -1,6 +1,7 @@
 //! `render`: lights a field and writes a picture.
 
 pub mod auto;
+mod bounce;
 pub mod camera;
 mod choices;
 pub mod world;
@@ -116,7 +117,21 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         (quality, choice) = (found, Some(now));
         progress.set_message("lighting");
     }
-    let plan = picture(&quality, &limits)?;
+    let asks = args.quality.has_bounces || goal.is_some();
+    let has_default_bounce =
+        is_png && !asks && args.lights.is_empty() && bounce::is_visible(&scene);
+    let bounced = match has_default_bounce {
+        true => bounce::planned(&quality, |quality| picture(quality, &limits)),
+        false => None,
+    };
+    let default_bounces = bounced.as_ref().map(|(quality, _)| quality.bounces);
+    let plan = match bounced {
+        Some((bounced, plan)) => {
+            quality = bounced;
+            plan
+        }
+        None => picture(&quality, &limits)?,
+    };
     let horizon = args.layers.contains(&Layer::Horizon);
     let mut used = plan.settings.clone();
     if horizon {
@@ -224,7 +239,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 gpu.report().name
             );
         }
-        setup::say_light(&args.lights, &scene);
+        setup::say_light(&args.lights, &scene, default_bounces);
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };

@@ -12,7 +12,8 @@ mod voids;
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, HeightField, Lights, Lines, Quality, Scene, Specular, Sun, Surface, setting,
+    Albedo, Border, Bounces, HeightField, Lights, Lines, Quality, Scene, Specular, Sun, Surface,
+    setting,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
@@ -312,12 +313,15 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     Ok(lights)
 }
 
-/// Prints the light as flags, where the command line gives none.
-pub fn say_light(args: &LightArgs, scene: &Scene) {
+/// Prints the light as flags, where the command line gives none; and the bounces that were added to it.
+pub fn say_light(args: &LightArgs, scene: &Scene, added: Option<Bounces>) {
     if args.is_empty() {
+        let bounces = added.map_or_else(String::new, |Bounces { count, azimuths, .. }| {
+            format!(" --bounces {count} --bounce-azimuths {azimuths}")
+        });
         match light("sun").words(&scene.lights).first() {
-            Some(sun) => crate::say!("Light: --sun {sun} --sky clear (default)."),
-            None => crate::say!("Light: --sky 1 (default)."),
+            Some(sun) => crate::say!("Light: --sun {sun} --sky clear{bounces} (default)."),
+            None => crate::say!("Light: --sky 1{bounces} (default)."),
         }
     }
 }

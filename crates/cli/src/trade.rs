@@ -133,7 +133,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     write(args, &report)?;
     if !args.global.quiet {
-        setup::say_light(&args.lights, &scene);
+        setup::say_light(&args.lights, &scene, None);
         report.print();
         crate::say!("{}", args.output.join(FILES[0]).display());
     }

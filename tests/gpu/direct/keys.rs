@@ -43,7 +43,7 @@ fn a_key_over_level_ground_has_its_closed_form() {
             let sun_azimuths = [1, 3, 16][(i + j) % 3];
             let quality = Quality { method: METHODS[j], sun_azimuths, ..Quality::default() };
             let expected = key.level_irradiance() / PI;
-            let error = ShadeError::new(0.0, 0.0, 1.0, sun_azimuths as usize);
+            let error = ShadeError::new(0.0, 0.0, 1.0, key.slices(sun_azimuths) as usize);
             for v in gpu.picture(&scene, &quality).values {
                 let off = (f64::from(v) - expected).abs();
                 assert!(off <= error.sun(key.width_rad), "{key:?} {border:?}: {v} {expected}");
@@ -59,10 +59,10 @@ fn a_key_of_the_whole_sky_is_the_sky() {
     let rough = fractal(64, 4).expect("a field");
     let heights = || rough.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
-    // 16 slices whose middles are multiples of 22.5°.
+    // 16 slices, four times the setting, whose middles are multiples of 22.5°.
     let key = key(180.0 - 11.25, 360.0, [0.0, 90.0]);
     for method in METHODS {
-        let quality = Quality { method, azimuths: 16, sun_azimuths: 16, ..Quality::default() };
+        let quality = Quality { method, azimuths: 16, sun_azimuths: 4, ..Quality::default() };
         let of_key = gpu.picture(&under_key(rough.clone(), Border::Plane, key), &quality);
         let of_sky = gpu.picture(&under_sky(rough.clone(), Border::Plane), &quality);
         // Azimuths are equal but for roundings of 2e-16 rad: so are horizons.
@@ -76,7 +76,7 @@ fn a_key_of_the_whole_sky_is_the_sky() {
 }
 
 /// A wall of height h along the columns hides, from level ground d away, elevations up to atan(h cos δ / d), δ from
-/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, compared with 64 slices: for an
+/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, compared with 64 slices or more: for an
 /// integrand f with |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, the error is less than (w/64)² (1.1 w / 24 + 2
 /// · 0.3 / 8) / 2π.
 #[test]
@@ -96,8 +96,11 @@ fn a_wall_cuts_a_key_in_elevation() {
             (0..20_000).map(light).sum::<f64>() / PI
         };
         let scene = under_key(wall.clone(), Border::Plane, key);
+        // The 64 slices of 25°, in proportion.
+        let slices = key.slices(64) as usize;
         let rule = (key.width_rad / 64.0).powi(2) * (1.1 * key.width_rad / 24.0 + 0.075) / TAU;
-        let error = ShadeError::new(device_march_slope(4.0, 1.0), 4.0, 1.0, 64).sun(key.width_rad);
+        let error =
+            ShadeError::new(device_march_slope(4.0, 1.0), 4.0, 1.0, slices).sun(key.width_rad);
         for method in [Method::Sweep, Method::BruteForce] {
             let quality = Quality { method, sun_azimuths: 64, ..Quality::default() };
             let picture = gpu.picture(&scene, &quality);
@@ -125,18 +128,19 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     let oracle = Oracle::new(&field, Border::Plane);
     let heights = || field.heights_m().iter().map(|h| f64::from(*h));
     let relief = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+    let slices = key.slices(Quality::default().sun_azimuths) as usize;
     let mut next = random(7);
     let picks: Vec<usize> = (0..400).map(|_| (next() * 65_536.0) as usize).collect();
     let expected_light: Vec<f64> =
-        picks.iter().map(|i| key_of(&oracle, i / 256, i % 256, &key, 8)[0]).collect();
+        picks.iter().map(|i| key_of(&oracle, i / 256, i % 256, &key, slices)[0]).collect();
     let scene = under_key(field.clone(), Border::Plane, key);
     let off = |gpu: &mut Device, method: Method| -> Vec<f64> {
         let picture = gpu.picture(&scene, &Quality { method, ..Quality::default() });
         let at = |(i, want): (&usize, &f64)| (f64::from(picture.values[*i]) - want).abs();
         picks.iter().zip(&expected_light).map(at).collect()
     };
-    let wedge = key.width_rad / 8.0;
-    let error = ShadeError::new(device_march_slope(relief, 66.0), relief, 66.0, 8);
+    let wedge = key.width_rad / slices as f64;
+    let error = ShadeError::new(device_march_slope(relief, 66.0), relief, 66.0, slices);
     let bound = error.sun(key.width_rad) + key.width_rad / PI * wedge * wedge / 24.0 * FRAC_PI_2;
     let worst = off(&mut gpu, Method::BruteForce).into_iter().fold(0.0, f64::max);
     let swept = off(&mut gpu, Method::Sweep);
@@ -150,7 +154,7 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     let far = picks
         .iter()
         .zip(&expected_light)
-        .map(|(i, want)| (key_of(&oracle, i / 256, i % 256, &turned, 8)[0] - want).abs());
+        .map(|(i, want)| (key_of(&oracle, i / 256, i % 256, &turned, slices)[0] - want).abs());
     assert!(far.sum::<f64>() / picks.len() as f64 > key.width_rad / PI * 0.3_f64.to_radians());
 }
 

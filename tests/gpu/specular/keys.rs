@@ -120,7 +120,7 @@ fn level_ground_has_its_closed_form() {
             let share = high.powf(n + 1.0) - low.max(0.0).powf(n + 1.0);
             let want = 2.0 * f64::from(SCALE) * key.width_rad / TAU * share;
             let of = |azimuth| key_specular(n, azimuth, (DVec3::Z, lowest), [20.0 * EPSILON, 0.0]);
-            let slices = across_key(&key, sun_azimuths.max(8), [1.0, 2.0]);
+            let slices = across_key(&key, key.slices(sun_azimuths).max(8), [1.0, 2.0]);
             // A narrow lobe has more slices, but the sum of their tolerances is the same.
             let off: f64 = slices.iter().map(|azimuth| of(azimuth)[1]).sum();
             let tolerance = 2.0 * f64::from(SCALE) * off + 300.0 * EPSILON * want;

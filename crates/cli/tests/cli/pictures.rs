@@ -32,7 +32,8 @@ fn write(folder: &Folder, name: &str, field: &HeightField) -> String {
     format!("{name} --cell {},{}", field.cell_m()[0], field.cell_m()[1])
 }
 
-/// Any terrain has contrast without a flag. Mountains are the bundled field, the others are synthetic.
+/// Any terrain has contrast without a flag, and a bounce where that is visible. Mountains are the bundled field, the others are
+/// synthetic.
 #[test]
 fn gpu_default_pictures_have_contrast() {
     const SIDE: usize = 256;
@@ -51,7 +52,9 @@ fn gpu_default_pictures_have_contrast() {
     for input in inputs {
         let run = succeeded(&folder, &format!("render {input} -o out.png"));
         assert!(run.out.contains("Light: --sun 315,35,3,"), "{}", run.out);
-        assert!(run.out.contains("--sky clear (default)"), "{}", run.out);
+        let is_steep = ["mountains", "hills", "city"].iter().any(|name| input.starts_with(name));
+        let bounce = if is_steep { " --bounces 1 --bounce-azimuths 8" } else { "" };
+        assert!(run.out.contains(&format!("--sky clear{bounce} (default)")), "{}", run.out);
         assert!(run.out.contains("Picture: --tint land --exposure "), "{}", run.out);
         let ([dark, light], clipped) = spread(luminances(&folder, "out.png"));
         println!("{input}: {dark:.0} to {light:.0}, {clipped:?} black and white");
@@ -75,6 +78,36 @@ fn gpu_level_ground_is_not_white() {
         let codes = luminances(&folder, "out.png");
         let [dark, light] = spread(codes).0;
         assert!(dark > 60.0 && light < 200.0, "{camera}: {dark} to {light}");
+    }
+}
+
+/// Where `render` adds no bounce: with a light or a number of bounces of the user's, in files of radiance, where the settings are
+/// chosen, and where a bounce would take brute force.
+#[test]
+fn gpu_a_bounce_is_added_to_default_light_alone() {
+    let folder = Folder::new();
+    let input = write(&folder, "city.npy", &terrain::city(64).unwrap());
+    let added = |flags: &str| {
+        let output = if flags.contains("-o ") { "" } else { " -o a.png" };
+        let run = succeeded(&folder, &format!("render {input}{flags}{output} --json a.json"));
+        let report = std::fs::read_to_string(folder.path("a.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let has_bounce = report["settings"]["bounces"] == 1;
+        assert_eq!(has_bounce, run.out.contains("--bounces 1"), "{flags}: {}", run.out);
+        has_bounce
+    };
+    assert!(added("") && added(" --camera west --size 96x54") && added(" --azimuths 8"));
+    for flags in [
+        " --bounces 0",
+        " --sun 315,35",
+        " --sky 1",
+        " -o a.exr",
+        " --albedo 0.02",
+        " --lines exact",
+        " --method brute-force",
+        " --time-budget 500 --no-cache",
+    ] {
+        assert!(!added(flags), "{flags}");
     }
 }
 

@@ -264,7 +264,7 @@ impl Costs {
         let circle = if Part::Azimuths.is_in(scene) { quality.azimuths } else { 0 };
         let suns = scene.lights.suns.iter();
         let discs: u32 = suns.map(|s| if s.is_point() { 1 } else { quality.sun_azimuths }).sum();
-        let keys = quality.sun_azimuths * scene.lights.keys.len() as u32;
+        let keys: u32 = scene.lights.keys.iter().map(|k| k.slices(quality.sun_azimuths)).sum();
         let all = f64::from(circle + discs + keys);
         let table = match &scene.lights.environment {
             Some(_) => f64::from(circle) * f64::from(quality.table_elevations),

@@ -154,7 +154,7 @@ fn slope_error(geometry: &SphereGeometry, quality: &Quality, largest: f64) -> f6
 
 /// A scene without its lights near the field; none without other lights.
 pub(super) fn without(scene: &Scene) -> Option<Scene> {
-    let lights = scene.lights.without_near();
+    let lights = Lights { sphere_lights: Vec::new(), ..scene.lights.clone() };
     let Lights { sky, environment, suns, keys, .. } = &lights;
     let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
     shines.then(|| Scene { lights, ..scene.clone() })

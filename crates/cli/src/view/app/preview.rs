@@ -239,14 +239,32 @@ impl Preview {
         Ok(())
     }
 
-    /// Makes the levels if there are none that fit the time of a drag.
+    /// Makes the levels if there are none. Where they do not fit the time of a drag a thread makes others, which the next input
+    /// after that uses; heights that move have no next input, and wait for them.
     fn fit(&mut self, screen: &mut Screen, state: &State) -> Result<()> {
-        if let Some(sides) = self.other_grids(state, DRAGGED) {
+        let waits = self.levels.is_none() || self.fixed.is_some() || state.is_moving();
+        if let Some(grounds) = finished(&mut self.next_grids).filter(|_| !waits) {
+            let grounds = grounds?;
             self.end(screen)?;
-            self.next_grids = None;
-            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
+            self.levels = Some(levels_of(grounds));
+        } else if let Some(sides) = self.other_grids(state, DRAGGED) {
+            if waits {
+                self.end(screen)?;
+                self.next_grids = None;
+                self.levels = Some(levels_of(grounds(&state.scene, sides)?));
+            } else {
+                self.make_grids(state, sides);
+            }
         }
         Ok(())
+    }
+
+    /// Starts a thread that makes other grids, unless one does already. Heights that move would not be those of a moment ago.
+    fn make_grids(&mut self, state: &State, sides: [usize; GRIDS]) {
+        if self.next_grids.is_none() && !state.is_moving() {
+            let scene = state.scene.clone();
+            self.next_grids = Some(std::thread::spawn(move || grounds(&scene, sides)));
+        }
     }
 
     /// Sides of the blocks of grids that fit the time, unless those in use are kept.
@@ -370,11 +388,8 @@ impl Preview {
             }));
         }
         // For the next input, while there is time.
-        if self.next_grids.is_none()
-            && let Some(sides) = self.other_grids(state, RESTED)
-        {
-            let scene = state.scene.clone();
-            self.next_grids = Some(std::thread::spawn(move || grounds(&scene, sides)));
+        if let Some(sides) = self.other_grids(state, RESTED) {
+            self.make_grids(state, sides);
         }
         Ok(())
     }
