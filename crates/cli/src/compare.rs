@@ -54,7 +54,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         beyond.iter().for_each(|excess| crate::say!("beyond {excess}"));
     }
     if let Some(path) = &args.diff {
-        write_difference(path, &pairs, &maps)?;
+        write_difference(args, path, &pairs, &maps)?;
     }
     if let Some(path) = &args.json {
         let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
@@ -85,7 +85,9 @@ fn check(args: &CompareArgs) -> Result<()> {
         }
     }
     let outputs = [("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())];
-    for ((flag, path), kinds) in outputs.into_iter().zip([&["exr", "npy"][..], &["json"]]) {
+    for ((flag, path), kinds) in
+        outputs.into_iter().zip([&["exr", "tif", "tiff", "npy"][..], &["json"]])
+    {
         path.map_or(Ok(()), |path| setup::check_output(flag, path, kinds))?;
     }
     setup::check_distinct(&outputs, &[&args.result, &args.reference])?;
@@ -105,7 +107,12 @@ fn check(args: &CompareArgs) -> Result<()> {
 }
 
 /// A ꟻLIP map per layer, by the layer's name.
-fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> Result<()> {
+fn write_difference(
+    args: &CompareArgs,
+    path: &Path,
+    pairs: &Pairs,
+    maps: &[(String, Vec<f32>)],
+) -> Result<()> {
     // Equal infinities have no difference.
     let difference = |(a, b): (&f32, &f32)| if a == b { 0.0 } else { a - b };
     let of = |pair: &Pair| pair.a.iter().zip(pair.b).map(difference).collect();
@@ -121,5 +128,12 @@ fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> 
         .map(|(pair, plane)| layer("difference", Channels::Scalar(pair.name, plane)))
         .collect();
     layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));
+    if setup::is_geotiff(path) {
+        let at = match files::read_georeference(&args.result)? {
+            None => files::read_georeference(&args.reference)?,
+            at => at,
+        };
+        return files::write_geotiff(path, [rows, cols], &layers, &[], at.as_ref(), &[]);
+    }
     files::write_exr(path, rows, cols, &layers, &[])
 }

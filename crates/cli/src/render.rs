@@ -258,7 +258,7 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
 }
 
 /// Brightness of a night picture relative to other pictures, with automatic exposure.
-const NIGHT_SHARE: f64 = 0.1;
+pub const NIGHT_SHARE: f64 = 0.1;
 
 /// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without
 /// that colour stays as dark as its tint.

@@ -270,10 +270,13 @@ fn is_dark(lights: &Lights) -> bool {
 
 /// Whether the only light is the faint sky that replaces a set sun.
 pub fn is_night(args: &LightArgs, lights: &Lights) -> bool {
-    let has_sky = matches!(args.sky, Some(SkyArg::Uniform(_))) || lights.environment.is_some();
-    !has_sky
-        && args.others.0.suns.iter().any(has_set)
-        && is_dark(&Lights { sky: None, ..lights.clone() })
+    let has_sky = matches!(args.sky, Some(SkyArg::Uniform(_)));
+    !has_sky && args.others.0.suns.iter().any(has_set) && has_sky_alone(lights)
+}
+
+/// Whether there is no light beside a uniform sky.
+pub fn has_sky_alone(lights: &Lights) -> bool {
+    is_dark(&Lights { sky: None, ..lights.clone() })
 }
 
 fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {

@@ -5,4 +5,4 @@ pub(crate) mod npz;
 pub(crate) mod planes;
 
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
-pub use planes::{Planes, parse_planes, read_planes};
+pub use planes::{Planes, parse_planes, read_georeference, read_planes};

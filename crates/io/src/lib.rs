@@ -21,7 +21,10 @@ mod open;
 mod png;
 mod textures;
 
-pub use arrays::{NpyWriter, Planes, parse_planes, read_planes, write_npy_f32, write_npy_heights};
+pub use arrays::{
+    NpyWriter, Planes, parse_planes, read_georeference, read_planes, write_npy_f32,
+    write_npy_heights,
+};
 pub use atomic::{
     ResultFolder, Written, abandon_unfinished, check_room, check_writable, write_json, write_text,
 };

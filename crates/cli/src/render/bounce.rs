@@ -6,7 +6,7 @@ use ridgelight::scene::{Albedo, Quality, Scene};
 use ridgelight_cpu::light::sky_of;
 use ridgelight_cpu::oracle::Oracle;
 
-/// Grid points that are looked at, and azimuths of each.
+/// Grid points of the estimate, and azimuths of each.
 const PLACES: usize = 256;
 const AZIMUTHS: usize = 16;
 /// The least change that counts, over the light of level ground: in sRGB, one code of 255 at middle grey (18 %) is 2 % of its light.

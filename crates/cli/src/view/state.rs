@@ -20,7 +20,7 @@ use super::script::Button;
 use super::smaller::Blocks;
 use super::strokes::Strokes;
 use crate::args::ViewArgs;
-use crate::render::{exposure, white};
+use crate::render::{NIGHT_SHARE, exposure, white};
 use crate::scene_file::Request;
 use crate::setup;
 use settings::{Refused, Settings};
@@ -78,6 +78,8 @@ pub struct State {
     exposure: f32,
     /// [`crate::render::white`] of the field as it was read.
     white: f64,
+    /// Whether it began with a sun that has set and no other light.
+    starts_at_night: bool,
     /// Whether the exposure is to be found from the picture.
     pub needs_exposure: bool,
     /// Whether the exposure is a preview's, to be found again from the full light.
@@ -107,9 +109,11 @@ impl State {
     pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
         let has_clear_sky = scene.lights.environment.is_some() && args.lights.env.is_none();
         let white = white(&scene.field, setup::tint_of(&args.surface));
+        let starts_at_night = setup::is_night(&args.lights, &scene.lights);
         let mut state = Self {
             scene,
             white,
+            starts_at_night,
             quality,
             asked: args.asked.clone(),
             moving: None,
@@ -159,7 +163,9 @@ impl State {
 
     /// Takes the exposure that suits a picture, of coarse light or of the full one.
     pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>, is_coarse: bool) {
-        (self.exposure, self.needs_exposure) = (exposure(picture, voids, self.white), false);
+        let is_night = self.starts_at_night && setup::has_sky_alone(&self.scene.lights);
+        let white = if is_night { NIGHT_SHARE * self.white } else { self.white };
+        (self.exposure, self.needs_exposure) = (exposure(picture, voids, white), false);
         self.has_coarse_exposure = is_coarse;
     }
 

@@ -105,7 +105,7 @@ fn gpu_a_bounce_is_added_to_default_light_alone() {
         " --albedo 0.02",
         " --lines exact",
         " --method brute-force",
-        " --time-budget 500 --no-cache",
+        " --max-error 0.5 --no-cache",
     ] {
         assert!(!added(flags), "{flags}");
     }

@@ -3,6 +3,7 @@
 use super::npy::Array;
 use crate::environment::hdr;
 use crate::exr;
+use crate::georeference::Georeference;
 use crate::heights::{geotiff, tif};
 use crate::open::{self, Format};
 use crate::png;
@@ -78,6 +79,18 @@ fn channels(rgb: &[[f32; 3]], grey: bool, alpha: Option<Vec<f32>>) -> (Vec<Strin
         planes.push(alpha);
     }
     (names, planes)
+}
+
+/// Position and reference system of a `.tif`; `None` for other files, and for one without a position.
+///
+/// # Errors
+/// A file that cannot be read, and tags that are wrong.
+pub fn read_georeference(path: &Path) -> Result<Option<Georeference>> {
+    let bytes = open::read(path)?;
+    if Format::of_bytes(&bytes) != Some(Format::Tiff) {
+        return Ok(None);
+    }
+    geotiff::georeference(path, &mut tif::Image::open(path, &bytes)?.tiff)
 }
 
 fn from_tiff(path: &Path, bytes: &[u8]) -> Result<Planes> {

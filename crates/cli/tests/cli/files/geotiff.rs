@@ -63,6 +63,34 @@ fn heights_in_feet_get_a_note() {
     }
 }
 
+/// A difference has the bands of an EXR, and the position of either input.
+#[test]
+fn gpu_a_difference_lies_where_its_inputs_lie() {
+    let folder = folder();
+    for (name, sun) in [("a", 20), ("b", 60)] {
+        for kind in ["tif", "exr"] {
+            done(&folder, &format!("hillshade utm.tif --sun 200,{sun} -o {name}.{kind}"));
+        }
+    }
+    let at = ridgelight_io::read_georeference(&folder.path("utm.tif")).unwrap().unwrap();
+    for (pair, expected) in [
+        ("a.tif b.tif", Some(&at)),
+        ("a.tif b.exr", Some(&at)),
+        ("a.exr b.tif", Some(&at)),
+        ("a.exr b.exr", None),
+    ] {
+        for kind in ["tif", "exr"] {
+            done(&folder, &format!("compare {pair} --diff d.{kind} --quiet"));
+        }
+        let found = ridgelight_io::read_georeference(&folder.path("d.tif")).unwrap();
+        assert_eq!(found.as_ref(), expected, "{pair}");
+        let [tif, exr] =
+            ["d.tif", "d.exr"].map(|name| ridgelight_io::read_planes(&folder.path(name)).unwrap());
+        assert_eq!((&tif.names, &tif.planes), (&exr.names, &exr.planes), "{pair}");
+        assert!(tif.planes[0].iter().any(|v| *v != 0.0), "{pair}");
+    }
+}
+
 /// A GeoTIFF and an EXR of one scene have the same channels; another scene differs.
 #[test]
 fn gpu_geotiffs_are_compared_by_band() {

@@ -29,7 +29,10 @@ const COMMANDS: &[(&str, &[&str])] = &[
     ("openness utm.tif --azimuths 8 -o", &["openness.tif"]),
     ("openness utm.tif --azimuths 8 --negative -o", &["negative.png"]),
     ("reference utm.tif --spp 128 -o", &["reference.tif", "reference.exr"]),
-    ("compare hillshade.npy other_sun.npy --diff", &["difference.exr", "difference.npy"]),
+    (
+        "compare hillshade.npy other_sun.npy --diff",
+        &["difference.exr", "difference.npy", "difference.tif"],
+    ),
     ("info utm.tif --json", &["info.json"]),
     (
         "bake utm.tif --what horizon,bent-normal,ellipse,scatter --directions 16 --azimuths 8 \
