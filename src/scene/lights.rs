@@ -199,9 +199,11 @@ impl Lights {
         self.sphere_lights.iter().enumerate().map(sphere)
     }
 
-    /// Only the lights near the field.
-    pub fn near_alone(&self) -> Self {
-        Self { sphere_lights: self.sphere_lights.clone(), ..Self::default() }
+    /// The lights near the field alone, and all but these.
+    pub fn near_and_far(&self) -> [Self; 2] {
+        let mut far = self.clone();
+        let sphere_lights = std::mem::take(&mut far.sphere_lights);
+        [Self { sphere_lights, ..Self::default() }, far]
     }
 
     /// The lights near the field moved by so much, east and north.

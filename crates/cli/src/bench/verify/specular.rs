@@ -81,7 +81,8 @@ pub(super) fn check(
         found.extend(keys::check(&under(keys), (places, dark), device)?);
     }
     if all.near().next().is_some() {
-        found.push(spheres::check(&under(all.near_alone()), places, device)?);
+        let [near, _] = all.near_and_far();
+        found.push(spheres::check(&under(near), places, device)?);
     }
     match found.is_empty() {
         true => Ok("specular: no light is reflected".to_owned()),

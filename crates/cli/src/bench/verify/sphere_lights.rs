@@ -26,7 +26,7 @@ pub(super) fn check_slices(
     places: &[usize],
     device: &mut Device,
 ) -> Result<Option<String>> {
-    let lights = scene.lights.near_alone().lit();
+    let lights = scene.lights.near_and_far()[0].lit();
     if lights.near().next().is_none() {
         return Ok(None);
     }
@@ -74,7 +74,7 @@ pub(super) fn check(
     ground_truth: &GroundTruth,
     device: &mut Device,
 ) -> Result<String> {
-    let lights = scene.lights.near_alone();
+    let [lights, _] = scene.lights.near_and_far();
     let (scene, quality) = (&Scene { lights, ..scene.clone() }, device.quality);
     // The plan bounds the light of culled sphere lights.
     let all = Quality { light_cutoff: 0.0, ..*quality };
@@ -154,7 +154,7 @@ fn slope_error(geometry: &SphereGeometry, quality: &Quality, largest: f64) -> f6
 
 /// A scene without its lights near the field; none without other lights.
 pub(super) fn without(scene: &Scene) -> Option<Scene> {
-    let lights = Lights { sphere_lights: Vec::new(), ..scene.lights.clone() };
+    let [_, lights] = scene.lights.near_and_far();
     let Lights { sky, environment, suns, keys, .. } = &lights;
     let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
     shines.then(|| Scene { lights, ..scene.clone() })

@@ -31,7 +31,7 @@ impl GroundTruth {
     /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let near = scene.lights.near_alone();
+        let [near, _] = scene.lights.near_and_far();
         let is_near = near.near().next().is_some();
         let Lights { sky, environment, suns, keys, .. } = scene.lights.clone();
         let aimed = match (suns.is_empty(), keys.is_empty()) {
