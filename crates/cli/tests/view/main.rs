@@ -158,14 +158,23 @@ fn gpu_window_equals_render() {
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
 }
 
-/// Light, tint and exposure of a user who gives none.
+/// Light, tint and exposure of a user who gives none, but for the bounce of `render`.
 #[test]
 fn gpu_default_window_equals_render() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nframes 2\nscreenshot shot.png\n";
-    folder.view(&display, "hills.asc --size 64x48 --exposure auto", script);
-    succeed(folder.command("render hills.asc -o render.png --quiet"));
-    assert_same(&folder, "shot.png", "render.png");
+    // By day, and at night.
+    for light in ["", " --sun 10,-5"] {
+        folder.view(
+            &display,
+            &format!("hills.asc{light} --size 64x48 --quiet --exposure auto"),
+            script,
+        );
+        succeed(
+            folder.command(&format!("render hills.asc{light} --bounces 0 -o render.png --quiet")),
+        );
+        assert_same(&folder, "shot.png", "render.png");
+    }
 }
 
 /// The sun of a scene without lights depends on the camera that `render` begins with; the window's does not turn with its
@@ -180,7 +189,7 @@ fn gpu_default_light_is_saved() {
         folder.done(&format!("render --scene {name}.json -o {name}_r.png --quiet"));
         assert_same(&folder, &format!("{name}.png"), &format!("{name}_r.png"));
     }
-    folder.done("render hills.asc -o default.png --quiet");
+    folder.done("render hills.asc --bounces 0 -o default.png --quiet");
     assert_same(&folder, "map.png", "default.png");
 }
 
