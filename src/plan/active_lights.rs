@@ -13,8 +13,8 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 
-/// The most azimuths that specular asks for across a key light: the maximum of the setting `sun_azimuths`.
-const MOST_AZIMUTHS: u32 = 256;
+/// Largest number of azimuths that specular can require across a key light: the maximum of the setting `sun_azimuths`.
+const MOST_SPECULAR_AZIMUTHS: u32 = 256;
 
 /// The lights that are not dark.
 pub(super) struct ActiveLights<'a> {
@@ -269,9 +269,10 @@ impl<'a> ActiveLights<'a> {
         Ok(lists)
     }
 
-    /// Azimuths across a key light for a setting of `sun_azimuths`, which specular may raise up to [`MOST_AZIMUTHS`].
+    /// Azimuths across a key light: [`KeyLight::slices`], or more for specular, which requires at most
+    /// [`MOST_SPECULAR_AZIMUTHS`].
     fn key_azimuths(&self, key: &KeyLight, setting: u32) -> u32 {
-        key.slices(setting).max(self.specular_azimuths(key).min(MOST_AZIMUTHS))
+        key.slices(setting).max(self.specular_azimuths(key).min(MOST_SPECULAR_AZIMUTHS))
     }
 
     /// Azimuths across a key light, each at most half as wide as the surface's narrowest lobe, whose standard deviation is
@@ -303,12 +304,16 @@ impl<'a> ActiveLights<'a> {
         }
         for (i, key) in &self.keys {
             let (number, count) = (i + 1, self.key_azimuths(key, quality.sun_azimuths));
+            let slices = key.slices(quality.sun_azimuths);
+            if slices > quality.sun_azimuths {
+                notes.push(format!("key {number}: {slices} slices, as it is wider than 25°"));
+            }
             if count < self.specular_azimuths(key) {
                 let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
                 notes.push(format!(
-                    "key {number}: {count} azimuths, the maximum; specular of exponents above {n:.0} needs more"
+                    "key {number}: {count} azimuths; specular of exponents above {n:.0} needs more"
                 ));
-            } else if count > key.slices(quality.sun_azimuths) {
+            } else if count > slices {
                 notes.push(format!(
                     "key {number}: {count} azimuths, each at most half as wide as the lobe"
                 ));

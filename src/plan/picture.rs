@@ -189,13 +189,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let shadows = (!of_lights.is_empty()).then(|| {
         let azimuths = held.shadows.iter().flat_map(|l| &lists[*l]);
         let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
-        Shadows::make(
-            &mut builder,
-            azimuths,
-            of,
-            (&of_lights, count),
-            (quality.sun_azimuths, limits),
-        )
+        // Fewer of a sun near the zenith; the number must not change as it moves.
+        let slices = held.shadows.iter().map(|l| lists[*l].len() as u32);
+        let slices = slices.fold(quality.sun_azimuths, u32::max);
+        Shadows::make(&mut builder, azimuths, of, (&of_lights, count), (slices, limits))
     });
     let walked_azimuths = lists.last().filter(|_| is_walked && bounces > 0);
     let walked = walked_azimuths.map(|azimuths| {

@@ -199,7 +199,7 @@ impl Lights {
         self.sphere_lights.iter().enumerate().map(sphere)
     }
 
-    /// The lights near the field alone, and all but these.
+    /// Splits the lights: those near the field, then those at infinity.
     pub fn near_and_far(&self) -> [Self; 2] {
         let mut far = self.clone();
         let sphere_lights = std::mem::take(&mut far.sphere_lights);

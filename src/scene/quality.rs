@@ -28,8 +28,8 @@ settings! {
         ///
         /// Fewer show steps in soft shadows; more take time in proportion. A wide sun needs more.
         ///
-        /// A key light wider than 25° has more in proportion to its width, up to four times as many. A sphere light that is wide
-        /// from a texel has up to eight times as many, one that is narrower than cells fewer.
+        /// A key light wider than 25° has this times width / 25°, at most four times as many. A sphere light has up to eight times
+        /// as many at texels where its angular width is large, and fewer if it is narrower than a cell.
         Advanced "sun_azimuths" sun_azimuths: u32 = 8, Values::Whole(1..=256);
 
         /// Basis of an environment's light

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Layer};
+use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{CompareArgs, Renamed};
 use crate::setup::{self, Outcome};
@@ -17,6 +17,11 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     let mut renamed = Renamed::default();
     let [a, b] = [&args.result, &args.reference].map(|path| pairs::read(path, &mut renamed));
     let (a, b) = (a?, b?);
+    // Before the work: its tags may be invalid.
+    let at = match &args.diff {
+        Some(path) if setup::is_geotiff(path) => georeference(args)?,
+        _ => None,
+    };
     if !args.quiet {
         renamed.warn();
     }
@@ -54,7 +59,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         beyond.iter().for_each(|excess| crate::say!("beyond {excess}"));
     }
     if let Some(path) = &args.diff {
-        write_difference(args, path, &pairs, &maps)?;
+        write_difference(path, at.as_ref(), &pairs, &maps)?;
     }
     if let Some(path) = &args.json {
         let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
@@ -106,10 +111,21 @@ fn check(args: &CompareArgs) -> Result<()> {
     Ok(())
 }
 
+/// Georeference of the first input that is a GeoTIFF with one.
+fn georeference(args: &CompareArgs) -> Result<Option<Georeference>> {
+    for path in [&args.result, &args.reference].into_iter().filter(|path| setup::is_geotiff(path)) {
+        let at = files::read_georeference(path)?;
+        if at.is_some() {
+            return Ok(at);
+        }
+    }
+    Ok(None)
+}
+
 /// A ꟻLIP map per layer, by the layer's name.
 fn write_difference(
-    args: &CompareArgs,
     path: &Path,
+    at: Option<&Georeference>,
     pairs: &Pairs,
     maps: &[(String, Vec<f32>)],
 ) -> Result<()> {
@@ -129,11 +145,7 @@ fn write_difference(
         .collect();
     layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));
     if setup::is_geotiff(path) {
-        let at = match files::read_georeference(&args.result)? {
-            None => files::read_georeference(&args.reference)?,
-            at => at,
-        };
-        return files::write_geotiff(path, [rows, cols], &layers, &[], at.as_ref(), &[]);
+        return files::write_geotiff(path, [rows, cols], &layers, &[], at, &[]);
     }
     files::write_exr(path, rows, cols, &layers, &[])
 }

@@ -117,15 +117,16 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         (quality, choice) = (found, Some(now));
         progress.set_message("lighting");
     }
-    let asks = args.quality.has_bounces || goal.is_some();
-    let has_default_bounce =
-        is_png && !asks && args.lights.is_empty() && bounce::is_visible(&scene);
-    let bounced = match has_default_bounce {
-        true => bounce::planned(&quality, |quality| picture(quality, &limits)),
+    let is_given = args.quality.gives("bounces") || goal.is_some() || !args.lights.is_empty();
+    let with_bounce = match is_png && !is_given && bounce::changes_picture(&scene) {
+        true => {
+            let has_azimuths = args.quality.gives("bounce_azimuths");
+            bounce::plan_with_bounce(&quality, has_azimuths, |quality| picture(quality, &limits))
+        }
         false => None,
     };
-    let default_bounces = bounced.as_ref().map(|(quality, _)| quality.bounces);
-    let plan = match bounced {
+    let added_bounces = with_bounce.as_ref().map(|(quality, _)| quality.bounces);
+    let plan = match with_bounce {
         Some((bounced, plan)) => {
             quality = bounced;
             plan
@@ -239,7 +240,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 gpu.report().name
             );
         }
-        setup::say_light(&args.lights, &scene, default_bounces);
+        setup::say_light(&args.lights, &scene, added_bounces);
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };

@@ -271,11 +271,11 @@ fn is_dark(lights: &Lights) -> bool {
 /// Whether the only light is the faint sky that replaces a set sun.
 pub fn is_night(args: &LightArgs, lights: &Lights) -> bool {
     let has_sky = matches!(args.sky, Some(SkyArg::Uniform(_)));
-    !has_sky && args.others.0.suns.iter().any(has_set) && has_sky_alone(lights)
+    !has_sky && args.others.0.suns.iter().any(has_set) && has_no_light_but_sky(lights)
 }
 
-/// Whether there is no light beside a uniform sky.
-pub fn has_sky_alone(lights: &Lights) -> bool {
+/// Whether there is no light other than a uniform sky.
+pub fn has_no_light_but_sky(lights: &Lights) -> bool {
     is_dark(&Lights { sky: None, ..lights.clone() })
 }
 
@@ -316,12 +316,13 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     Ok(lights)
 }
 
-/// Prints the light as flags, where the command line gives none; and the bounces that were added to it.
-pub fn say_light(args: &LightArgs, scene: &Scene, added: Option<Bounces>) {
+/// Prints the default light as flags, with the bounces that were added. Prints nothing if the command line gives a light.
+pub fn say_light(args: &LightArgs, scene: &Scene, added_bounces: Option<Bounces>) {
     if args.is_empty() {
-        let bounces = added.map_or_else(String::new, |Bounces { count, azimuths, .. }| {
-            format!(" --bounces {count} --bounce-azimuths {azimuths}")
-        });
+        let bounces =
+            added_bounces.map_or_else(String::new, |Bounces { count, azimuths, .. }| {
+                format!(" --bounces {count} --bounce-azimuths {azimuths}")
+            });
         match light("sun").words(&scene.lights).first() {
             Some(sun) => crate::say!("Light: --sun {sun} --sky clear{bounces} (default)."),
             None => crate::say!("Light: --sky 1{bounces} (default)."),
@@ -421,6 +422,13 @@ pub fn is_geotiff(path: &Path) -> bool {
     ["tif", "tiff"].contains(&extension(path).as_str())
 }
 
+/// ".exr, .npy or .tif"
+fn either(kinds: &[&str]) -> String {
+    let (last, others) = kinds.split_last().expect("an ending");
+    let others = others.join(", .");
+    if others.is_empty() { format!(".{last}") } else { format!(".{others} or .{last}") }
+}
+
 /// Refuses an output file that cannot be written, before the work.
 pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
     let found = extension(path);
@@ -428,7 +436,7 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
         return Err(Error::setting(
             flag,
             path.display().to_string(),
-            format!("a file ending in .{}", kinds.join(" or .")),
+            format!("a file ending in {}", either(kinds)),
         ));
     }
     if path.is_dir() {

@@ -63,7 +63,7 @@ impl Format {
         Some(FORMATS.iter().find(|about| about.2.contains(&extension.as_str()))?.0)
     }
 
-    pub(crate) fn of_bytes(bytes: &[u8]) -> Option<Self> {
+    fn of_bytes(bytes: &[u8]) -> Option<Self> {
         let has = |about: &&About| about.3.iter().any(|start| bytes.starts_with(start));
         Some(FORMATS.iter().find(has)?.0)
     }

@@ -452,8 +452,8 @@ mod tests {
         assert!(noted.len() == 1 && noted[0].contains("sun 2: exponents above 1200 "), "{noted:?}");
     }
 
-    /// Key lights have as many azimuths as the lobe needs, never more than 256. At a width of 1 radian these are 2 √(99 + 1) = 20 for
-    /// exponent 99, and for 9 fewer than the setting's 8. Horizons cut the light, not shadow heights. There are no edits.
+    /// Key lights have as many azimuths as the lobe needs, up to 256, and at least their own slices. At a width of 1 radian the lobe needs
+    /// 2 √(99 + 1) = 20 for exponent 99, and for 9 fewer than the 18 slices: 8 for each 25°. Horizons cut the light, not shadow heights. There are no edits.
     #[test]
     fn key_lights_have_the_azimuths_that_a_lobe_needs() {
         let planned = |exponent, scale, elevations_rad| {
@@ -462,7 +462,7 @@ mod tests {
             plan_of(Lights { keys, ..Lights::default() }, Basis::Auto, phong).unwrap()
         };
         let tall = [0.1, 0.5];
-        for (exponent, scale, count) in [(99.0, 0.5, 20), (9.0, 0.5, 8), (99.0, 0.0, 8)] {
+        for (exponent, scale, count) in [(99.0, 0.5, 20), (9.0, 0.5, 18), (99.0, 0.0, 18)] {
             let plan = planned(exponent, scale, tall);
             assert_eq!(plan.azimuths.len(), count, "{exponent} {scale}");
             assert_eq!(plan.edit_passes.is_empty(), scale > 0.0, "{exponent} {scale}");

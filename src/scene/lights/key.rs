@@ -22,8 +22,9 @@ pub struct KeyLight {
 /// Smallest height of a key light, radians: f32 rounds each of its edges by 6e-8.
 const LOWEST_RAD: f64 = 1e-5;
 
-/// Width above which a key light has more slices than the setting: 25°. 8 slices of 50° miss 0.3 % of the light where
-/// 16 do not (benches/results/defaults.txt).
+/// Width above which a key light has more slices than the setting: 25°. For a key light 50° wide over Mt Washington with
+/// border `plane`, 16 slices instead of 8 reduce the error from 0.203 % to 0.079 % (defaults.txt in benches/results at commit
+/// d23f9d59).
 const SLICED_RAD: f64 = 25.0 * PI / 180.0;
 
 impl KeyLight {
@@ -65,8 +66,8 @@ impl KeyLight {
         Ok(())
     }
 
-    /// Slices for a setting: as many, and in proportion more across a width above 25°, up to four times as many. At the
-    /// default, those of the widest light are the azimuths of a sky.
+    /// Number of slices for a setting: the setting up to a width of 25°, then the setting times width / 25°, at most four times the
+    /// setting. At the default, lights of 100° and wider have 32, as many as a sky has azimuths.
     pub fn slices(&self, setting: u32) -> u32 {
         let times = (self.clamped().width_rad / SLICED_RAD).clamp(1.0, 4.0);
         (f64::from(setting) * times).round() as u32

@@ -59,7 +59,7 @@ fn a_key_of_the_whole_sky_is_the_sky() {
     let rough = fractal(64, 4).expect("a field");
     let heights = || rough.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
-    // 16 slices, four times the setting, whose middles are multiples of 22.5°.
+    // The setting 4 gives 16 slices, whose middles are multiples of 22.5°.
     let key = key(180.0 - 11.25, 360.0, [0.0, 90.0]);
     for method in METHODS {
         let quality = Quality { method, azimuths: 16, sun_azimuths: 4, ..Quality::default() };
@@ -76,7 +76,7 @@ fn a_key_of_the_whole_sky_is_the_sky() {
 }
 
 /// A wall of height h along the columns hides, from level ground d away, elevations up to atan(h cos δ / d), δ from
-/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, compared with 64 slices or more: for an
+/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, compared with at least 64 slices: for an
 /// integrand f with |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, the error is less than (w/64)² (1.1 w / 24 + 2
 /// · 0.3 / 8) / 2π.
 #[test]
@@ -96,7 +96,7 @@ fn a_wall_cuts_a_key_in_elevation() {
             (0..20_000).map(light).sum::<f64>() / PI
         };
         let scene = under_key(wall.clone(), Border::Plane, key);
-        // The 64 slices of 25°, in proportion.
+        // 64 up to 25°, and proportionally more for a wider key light.
         let slices = key.slices(64) as usize;
         let rule = (key.width_rad / 64.0).powi(2) * (1.1 * key.width_rad / 24.0 + 0.075) / TAU;
         let error =

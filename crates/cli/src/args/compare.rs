@@ -56,10 +56,10 @@ pub struct CompareArgs {
         help_heading = "Output"
     )]
     pub pixels_per_degree: Option<f64>,
-    /// Write images of the differences, .exr, .tif or .npy
+    /// Write difference images: .exr, .tif or .npy
     ///
-    /// .exr and .tif: difference.CHANNEL (A - B) of every channel, and flip (0 to 1) of every picture, named flip.LAYER where the
-    /// layer has a name; a .tif has the position of A, else of B. .npy: f32 [channels, rows, cols], A - B.
+    /// .exr and .tif have the channel difference.CHANNEL (A - B) for each channel and flip (0 to 1) for each picture, or flip.LAYER
+    /// for a named layer. A .tif has the georeference of the first input that is a GeoTIFF. .npy is f32 [channels, rows, cols], A - B.
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub diff: Option<PathBuf>,
     /// Write the figures as JSON; null is infinite

@@ -14,8 +14,8 @@ pub struct QualityArgs {
     values: Vec<(&'static Setting, String)>,
     /// Settings that the user wrote on the command line, and the first value of each.
     pub written: Vec<(String, String)>,
-    /// Whether the command line or the scene file sets `--bounces`.
-    pub has_bounces: bool,
+    /// Names of the settings that the command line or the scene file gives.
+    given: Vec<String>,
 }
 
 impl QualityArgs {
@@ -29,6 +29,11 @@ impl QualityArgs {
         Ok(quality)
     }
 
+    /// Whether the command line or the scene file gives a setting.
+    pub fn gives(&self, setting: &str) -> bool {
+        self.given.iter().any(|given| given == setting)
+    }
+
     /// Records which settings the user wrote: values alone do not differ from defaults or from a scene file's.
     pub fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
         let written = matches.ids().map(clap::Id::as_str).filter_map(|id| {
@@ -38,7 +43,9 @@ impl QualityArgs {
             Some((id.to_owned(), value.to_string_lossy().into_owned()))
         });
         self.written = written.collect();
-        self.has_bounces = matches.value_source("bounces") == Some(ValueSource::CommandLine);
+        let is_given = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        self.given =
+            matches.ids().map(clap::Id::as_str).filter(is_given).map(str::to_owned).collect();
     }
 }
 
@@ -99,7 +106,7 @@ impl FromArgMatches for QualityArgs {
             (setting, value.unwrap_or_else(|| setting.get(&Quality::default())))
         };
         let values = SETTINGS.iter().map(value).collect();
-        Ok(Self { values, written: Vec::new(), has_bounces: false })
+        Ok(Self { values, written: Vec::new(), given: Vec::new() })
     }
 
     fn update_from_arg_matches(

@@ -196,7 +196,8 @@ pub fn say_idle_light(args: &BakeArgs, scatters: bool) {
 /// Scattered light: three bounces by default, none with --bounces 0.
 pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
     let default = Scatter::default();
-    let bounces = if args.quality.has_bounces { quality.bounces.count } else { default.bounces };
+    let bounces =
+        if args.quality.gives("bounces") { quality.bounces.count } else { default.bounces };
     let (paths, seed) = (args.paths.unwrap_or(256), args.seed.unwrap_or(0));
     let cutoff = quality.bounces.cutoff;
     (bounces > 0).then_some(Scatter { bounces, paths, cutoff, seed, ..default })

@@ -78,7 +78,7 @@ pub struct State {
     exposure: f32,
     /// [`crate::render::white`] of the field as it was read.
     white: f64,
-    /// Whether it began with a sun that has set and no other light.
+    /// Whether the window started with a sun below the horizontal and no other light.
     starts_at_night: bool,
     /// Whether the exposure is to be found from the picture.
     pub needs_exposure: bool,
@@ -163,7 +163,7 @@ impl State {
 
     /// Takes the exposure that suits a picture, of coarse light or of the full one.
     pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>, is_coarse: bool) {
-        let is_night = self.starts_at_night && setup::has_sky_alone(&self.scene.lights);
+        let is_night = self.starts_at_night && setup::has_no_light_but_sky(&self.scene.lights);
         let white = if is_night { NIGHT_SHARE * self.white } else { self.white };
         (self.exposure, self.needs_exposure) = (exposure(picture, voids, white), false);
         self.has_coarse_exposure = is_coarse;

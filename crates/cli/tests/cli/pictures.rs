@@ -32,8 +32,8 @@ fn write(folder: &Folder, name: &str, field: &HeightField) -> String {
     format!("{name} --cell {},{}", field.cell_m()[0], field.cell_m()[1])
 }
 
-/// Any terrain has contrast without a flag, and a bounce where that is visible. Mountains are the bundled field, the others are
-/// synthetic.
+/// Default pictures of every terrain have contrast, and a bounce where it changes them. Mountains are the bundled field, the others
+/// are synthetic.
 #[test]
 fn gpu_default_pictures_have_contrast() {
     const SIDE: usize = 256;
@@ -81,10 +81,10 @@ fn gpu_level_ground_is_not_white() {
     }
 }
 
-/// Where `render` adds no bounce: with a light or a number of bounces of the user's, in files of radiance, where the settings are
-/// chosen, and where a bounce would take brute force.
+/// `render` adds no bounce if the user gives a light or `--bounces`, to files of radiance, with `--max-error`, where it would not
+/// change the picture, and where it would use brute force.
 #[test]
-fn gpu_a_bounce_is_added_to_default_light_alone() {
+fn gpu_only_default_light_gets_a_bounce() {
     let folder = Folder::new();
     let input = write(&folder, "city.npy", &terrain::city(64).unwrap());
     let added = |flags: &str| {

@@ -158,12 +158,11 @@ fn gpu_window_equals_render() {
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
 }
 
-/// Light, tint and exposure of a user who gives none, but for the bounce of `render`.
+/// Without flags, the window equals `render --bounces 0`, by day and at night.
 #[test]
 fn gpu_default_window_equals_render() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nframes 2\nscreenshot shot.png\n";
-    // By day, and at night.
     for light in ["", " --sun 10,-5"] {
         folder.view(
             &display,

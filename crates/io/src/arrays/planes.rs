@@ -81,15 +81,13 @@ fn channels(rgb: &[[f32; 3]], grey: bool, alpha: Option<Vec<f32>>) -> (Vec<Strin
     (names, planes)
 }
 
-/// Position and reference system of a `.tif`; `None` for other files, and for one without a position.
+/// Georeference of a `.tif`; `None` if it has none.
 ///
 /// # Errors
-/// A file that cannot be read, and tags that are wrong.
+/// A file that is no `.tif`, that cannot be read, or whose tags are invalid.
 pub fn read_georeference(path: &Path) -> Result<Option<Georeference>> {
     let bytes = open::read(path)?;
-    if Format::of_bytes(&bytes) != Some(Format::Tiff) {
-        return Ok(None);
-    }
+    open::format(path, &bytes, &[Format::Tiff])?;
     geotiff::georeference(path, &mut tif::Image::open(path, &bytes)?.tiff)
 }
 

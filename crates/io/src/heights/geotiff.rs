@@ -141,18 +141,18 @@ pub(crate) fn read(
             return Err(Error::file(path, place, format!("model type {model}"), expected));
         }
     };
-    let georeference = placed(path, tiff, &grid, &keys);
+    let georeference = georeference_of(path, tiff, &grid, &keys);
     Ok(Geo { cell, cell_unit_m, unit_m, unit_warning, scale, nodata, georeference, warnings })
 }
 
-/// Position and reference system of a file, if it has a position.
+/// Georeference of a file, if it has one.
 pub(crate) fn georeference(path: &Path, tiff: &mut Tiff) -> Result<Option<Georeference>> {
     let Some(grid) = grid(path, tiff)? else { return Ok(None) };
     let keys = Keys::read(path, tiff)?;
-    Ok(placed(path, tiff, &grid, &keys))
+    Ok(georeference_of(path, tiff, &grid, &keys))
 }
 
-fn placed(path: &Path, tiff: &mut Tiff, grid: &Grid, keys: &Keys) -> Option<Georeference> {
+fn georeference_of(path: &Path, tiff: &mut Tiff, grid: &Grid, keys: &Keys) -> Option<Georeference> {
     let origin = grid.origin?;
     Some(Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)))
 }

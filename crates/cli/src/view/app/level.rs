@@ -315,14 +315,15 @@ pub fn grid_work(scene: &Scene, quality: &Quality, of: usize, side: usize) -> f6
     }
 }
 
-/// Texels times azimuths, with a sun as eight, on blocks of `side` grid points.
+/// Texels times azimuths, with a sun or a sphere light as eight, on blocks of `side` grid points.
 pub fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
     let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
     let lights = &scene.lights;
     let has_sky = lights.sky.is_some() || lights.environment.is_some() || quality.bounces.count > 0;
     let of_sky = if has_sky { f64::from(quality.azimuths) } else { 0.0 };
-    let others = lights.suns.len() + lights.keys.len() + lights.near().count() + 1;
-    texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + 8.0 * others as f64)
+    let of_keys: u32 = lights.keys.iter().map(|key| key.slices(8)).sum();
+    let others = 8 * (lights.suns.len() + lights.near().count() + 1) as u32 + of_keys;
+    texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + f64::from(others))
 }
 
 #[cfg(test)]

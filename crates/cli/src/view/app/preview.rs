@@ -71,7 +71,7 @@ enum Running {
 
 pub struct Preview {
     levels: Option<[Level; GRIDS]>,
-    /// Other grids, made while input rests.
+    /// Other grids that a thread makes, during a drag or at rest.
     next_grids: Option<JoinHandle<Result<[Ground; GRIDS]>>>,
     /// The thread that computes the error of the last preview.
     next_error: Option<JoinHandle<Option<f64>>>,
@@ -227,7 +227,7 @@ impl Preview {
         if edited.is_some() || state.is_moving() {
             self.next_grids = None;
         }
-        self.fit(screen, state)?;
+        self.fit(screen, state, edited.is_some())?;
         self.changed = Instant::now();
         let missed = self.missed.take();
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
@@ -239,10 +239,11 @@ impl Preview {
         Ok(())
     }
 
-    /// Makes the levels if there are none. Where they do not fit the time of a drag a thread makes others, which the next input
-    /// after that uses; heights that move have no next input, and wait for them.
-    fn fit(&mut self, screen: &mut Screen, state: &State) -> Result<()> {
-        let waits = self.levels.is_none() || self.fixed.is_some() || state.is_moving();
+    /// Makes the levels if there are none. If the present ones are too slow or too coarse for a drag, a thread makes others, and the
+    /// first input after it finishes uses them. Edited and animated heights, and sides that a script gives, wait for new levels.
+    fn fit(&mut self, screen: &mut Screen, state: &State, is_edited: bool) -> Result<()> {
+        let is_animated = state.is_moving() || is_edited;
+        let waits = self.levels.is_none() || self.fixed.is_some() || is_animated;
         if let Some(grounds) = finished(&mut self.next_grids).filter(|_| !waits) {
             let grounds = grounds?;
             self.end(screen)?;
@@ -253,15 +254,15 @@ impl Preview {
                 self.next_grids = None;
                 self.levels = Some(levels_of(grounds(&state.scene, sides)?));
             } else {
-                self.make_grids(state, sides);
+                self.start_grids(state, sides);
             }
         }
         Ok(())
     }
 
-    /// Starts a thread that makes other grids, unless one does already. Heights that move would not be those of a moment ago.
-    fn make_grids(&mut self, state: &State, sides: [usize; GRIDS]) {
-        if self.next_grids.is_none() && !state.is_moving() {
+    /// Starts a thread that makes other grids, unless one is running.
+    fn start_grids(&mut self, state: &State, sides: [usize; GRIDS]) {
+        if self.next_grids.is_none() {
             let scene = state.scene.clone();
             self.next_grids = Some(std::thread::spawn(move || grounds(&scene, sides)));
         }
@@ -389,7 +390,7 @@ impl Preview {
         }
         // For the next input, while there is time.
         if let Some(sides) = self.other_grids(state, RESTED) {
-            self.make_grids(state, sides);
+            self.start_grids(state, sides);
         }
         Ok(())
     }

@@ -78,7 +78,7 @@ fn unlike_files_are_refused() {
         ("a.asc one.npy", 1, &["a.asc", "the extension .asc"]),
         ("old.json new.json", 1, &["old.json: name", "`ridgelight bench --against old.json`"]),
         ("one.npy .", 1, &["a directory"]),
-        ("one.npy two.npy --diff d.png", 2, &["--diff: found d.png", ".tif or .tiff or .npy"]),
+        ("one.npy two.npy --diff d.png", 2, &["--diff: found d.png", ".exr, .tif, .tiff or .npy"]),
         ("one.npy two.npy --diff no/d.exr", 2, &["--diff", "a folder no"]),
         ("one.npy two.npy --diff one.npy", 2, &["--diff: found one.npy", "the input"]),
         ("one.npy two.npy --json d.txt", 2, &["--json: found d.txt", ".json"]),

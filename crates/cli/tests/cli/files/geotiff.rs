@@ -63,9 +63,9 @@ fn heights_in_feet_get_a_note() {
     }
 }
 
-/// A difference has the bands of an EXR, and the position of either input.
+/// A difference GeoTIFF has the channels of the EXR and the georeference of the first input that has one.
 #[test]
-fn gpu_a_difference_lies_where_its_inputs_lie() {
+fn gpu_a_difference_has_the_georeference_of_an_input() {
     let folder = folder();
     for (name, sun) in [("a", 20), ("b", 60)] {
         for kind in ["tif", "exr"] {
