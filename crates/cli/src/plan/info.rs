@@ -140,10 +140,10 @@ fn say(args: &InfoArgs, facts: &Value) {
     line(
         "memory",
         format!(
-            "render {}, sky view {}, render --bounces 1 {}",
+            "render --bounces 0 {}, with 1 {}, sky view {}",
             memory("render"),
-            memory("sky_view"),
-            memory("render_bounces_1")
+            memory("render_bounces_1"),
+            memory("sky_view")
         ),
     );
     for (name, key) in [("warning", "warnings"), ("note", "notes")] {
