@@ -13,7 +13,7 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 
-/// Largest number of azimuths that specular can require across a key light: the maximum of the setting `sun_azimuths`.
+/// Largest number of azimuths that specular sets across a key light: the maximum of the setting `sun_azimuths`.
 const MOST_SPECULAR_AZIMUTHS: u32 = 256;
 
 /// The lights that are not dark.
@@ -269,7 +269,7 @@ impl<'a> ActiveLights<'a> {
         Ok(lists)
     }
 
-    /// Azimuths across a key light: [`KeyLight::slices`], or more for specular, which requires at most
+    /// Azimuths across a key light: [`KeyLight::slices`], or more for specular, which sets at most
     /// [`MOST_SPECULAR_AZIMUTHS`].
     fn key_azimuths(&self, key: &KeyLight, setting: u32) -> u32 {
         key.slices(setting).max(self.specular_azimuths(key).min(MOST_SPECULAR_AZIMUTHS))
@@ -293,7 +293,7 @@ impl<'a> ActiveLights<'a> {
         narrowest.map_or(0, |n| (2.0 * width_rad * (n + 1.0).sqrt()).ceil() as u32)
     }
 
-    /// Notes on what specular changes for key lights.
+    /// Notes on the slices of key lights, and on their shadows with specular.
     pub(super) fn key_notes(&self, quality: &Quality) -> Vec<String> {
         let mut notes = Vec::new();
         if self.keys.iter().any(|(_, key)| Shadows::suits(key)) {
@@ -305,17 +305,17 @@ impl<'a> ActiveLights<'a> {
         for (i, key) in &self.keys {
             let (number, count) = (i + 1, self.key_azimuths(key, quality.sun_azimuths));
             let slices = key.slices(quality.sun_azimuths);
-            if slices > quality.sun_azimuths {
+            if slices == count && slices > quality.sun_azimuths {
                 notes.push(format!("key {number}: {slices} slices, as it is wider than 25°"));
             }
             if count < self.specular_azimuths(key) {
                 let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
                 notes.push(format!(
-                    "key {number}: {count} azimuths; specular of exponents above {n:.0} needs more"
+                    "key {number}: {count} slices; specular of exponents above {n:.0} needs more"
                 ));
             } else if count > slices {
                 notes.push(format!(
-                    "key {number}: {count} azimuths, each at most half as wide as the lobe"
+                    "key {number}: {count} slices, each at most half as wide as the lobe"
                 ));
             }
         }

@@ -189,7 +189,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let shadows = (!of_lights.is_empty()).then(|| {
         let azimuths = held.shadows.iter().flat_map(|l| &lists[*l]);
         let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
-        // Fewer of a sun near the zenith; the number must not change as it moves.
+        // A sun near the zenith has fewer slices. At least `sun_azimuths`, so that the number does not change as the sun moves.
         let slices = held.shadows.iter().map(|l| lists[*l].len() as u32);
         let slices = slices.fold(quality.sun_azimuths, u32::max);
         Shadows::make(&mut builder, azimuths, of, (&of_lights, count), (slices, limits))

@@ -28,8 +28,8 @@ settings! {
         ///
         /// Fewer show steps in soft shadows; more take time in proportion. A wide sun needs more.
         ///
-        /// A key light wider than 25° has this times width / 25°, at most four times as many. A sphere light has up to eight times
-        /// as many at texels where its angular width is large, and fewer if it is narrower than a cell.
+        /// A key light wider than 25° has `sun_azimuths` × width / 25° slices, at most 4 × `sun_azimuths`. A sphere light has up to
+        /// 8 × `sun_azimuths` at texels where its angular width is large, and fewer if it is narrower than a cell.
         Advanced "sun_azimuths" sun_azimuths: u32 = 8, Values::Whole(1..=256);
 
         /// Basis of an environment's light

@@ -350,7 +350,7 @@ fn key_lights() {
         assert!(dark.notes.iter().any(|n| n == note), "{:?}", dark.notes);
     }
     let lit = picture(&dropped, Border::Open);
-    // 28.6° wide: 9 slices at the setting 8 for 25°.
+    // 28.6° wide: 8 × 28.6 / 25 = 9 slices.
     assert_eq!(lit.azimuths.len(), 8 + 9);
     let visible: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
     assert_eq!(visible, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);

@@ -263,13 +263,24 @@ fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
-/// A warning if the median of a frame is too uncertain.
+/// A warning if the median of a frame is too uncertain: reports the worst and the number of others.
 fn noise(rows: &[Row]) -> Option<String> {
-    let row = rows.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY))?;
+    let totals = || rows.iter().filter(|row| row.pass == "total");
+    let noisy = totals().filter(|row| row.spread() > Some(NOISY)).count();
+    let worst =
+        totals().max_by(|a, b| a.spread().unwrap_or(0.0).total_cmp(&b.spread().unwrap_or(0.0)))?;
+    let [cols, rows] = worst.size;
+    let others = match noisy {
+        0 => return None,
+        1 => String::new(),
+        count => format!("; {count} of {} totals span more than that", totals().count()),
+    };
     Some(format!(
-        "noisy: the 95 % confidence interval of the {} total spans {:.0} % of its median, expected at most 10 %",
-        row.mode.replace('_', " "),
-        100.0 * row.spread()?
+        "noisy: the 95 % confidence interval of the {} total of {cols}x{rows}, {} azimuths, spans {:.0} % of its median, expected at most \
+         10 %{others}",
+        worst.mode.replace('_', " "),
+        worst.azimuths,
+        100.0 * worst.spread()?
     ))
 }
 
@@ -551,7 +562,14 @@ mod tests {
         let row = |pass, step| Row::of(pass, "in_flow", &plan, &[], 4, (10, &spread(10, step)));
         assert_eq!(noise(&[row("total", 1.5), row("sky_shade", 9.0)]), None);
         let said = noise(&[row("total", 2.0)]).unwrap();
-        assert!(said.contains("in flow total spans 13 %"), "{said}");
+        assert!(said.contains("in flow total of ") && said.contains(" spans 13 %"), "{said}");
+        assert!(!said.contains("totals"), "{said}");
+        // The worst of several, and their number.
+        let said = noise(&[row("total", 2.0), row("total", 1.5), row("total", 3.0)]).unwrap();
+        assert!(
+            said.contains(" spans 20 %") && said.ends_with("; 2 of 3 totals span more than that"),
+            "{said}"
+        );
         // Too few runs for an interval say nothing.
         assert_eq!(
             noise(&[Row::of("total", "in_flow", &plan, &[], 4, (3, &[1.0, 2.0, 9.0]))]),

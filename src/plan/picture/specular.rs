@@ -453,7 +453,7 @@ mod tests {
     }
 
     /// Key lights have as many azimuths as the lobe needs, up to 256, and at least their own slices. At a width of 1 radian the lobe needs
-    /// 2 √(99 + 1) = 20 for exponent 99, and for 9 fewer than the 18 slices: 8 for each 25°. Horizons cut the light, not shadow heights. There are no edits.
+    /// 2 √(99 + 1) = 20 for exponent 99, and for 9 fewer than the 18 slices: 8 × 57.3 / 25. Horizons cut the light, not shadow heights. There are no edits.
     #[test]
     fn key_lights_have_the_azimuths_that_a_lobe_needs() {
         let planned = |exponent, scale, elevations_rad| {
@@ -466,7 +466,7 @@ mod tests {
             let plan = planned(exponent, scale, tall);
             assert_eq!(plan.azimuths.len(), count, "{exponent} {scale}");
             assert_eq!(plan.edit_passes.is_empty(), scale > 0.0, "{exponent} {scale}");
-            let noted = plan.notes.iter().any(|n| n.starts_with("key 1: 20 azimuths"));
+            let noted = plan.notes.iter().any(|n| n.starts_with("key 1: 20 slices"));
             assert_eq!(noted, count == 20, "{:?}", plan.notes);
         }
         let low = planned(99.0, 0.5, [0.1, 0.15]);

@@ -59,7 +59,7 @@ pub struct CompareArgs {
     /// Write difference images: .exr, .tif or .npy
     ///
     /// .exr and .tif have the channel difference.CHANNEL (A - B) for each channel and flip (0 to 1) for each picture, or flip.LAYER
-    /// for a named layer. A .tif has the georeference of the first input that is a GeoTIFF. .npy is f32 [channels, rows, cols], A - B.
+    /// for a named layer. A .tif has the georeference of the first input that has one. .npy is f32 [channels, rows, cols], A - B.
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub diff: Option<PathBuf>,
     /// Write the figures as JSON; null is infinite

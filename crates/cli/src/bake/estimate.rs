@@ -40,8 +40,9 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Runs a part of the bake on a piece of the field, twice: only the first run makes pipelines. Then on a
-    /// larger piece where these runs were short. The times of the last run are proportional to the work.
+    /// Runs a part of the bake on a piece of the field, twice: only the first run makes pipelines. Then twice on a larger piece where
+    /// these runs were short: its sweeps can have another form and other pipelines. The times of the last run are proportional to the
+    /// work.
     ///
     /// # Errors
     /// Those of the bake. Some may apply to the piece alone.
@@ -49,12 +50,14 @@ impl Estimate {
         let cold = total(&trial(gpu, args, job, PIECE)?);
         let mut trials = trial(gpu, args, job, PIECE)?;
         let warm = total(&trials);
-        let mut took = cold + warm;
+        let (mut took, mut once) = (cold + warm, cold - warm);
         let side = (PIECE as f64 * (TRIAL_SECONDS / warm).sqrt()) as usize;
         let longest = job.scene.field.rows().max(job.scene.field.cols());
         if side > 2 * PIECE && longest > 2 * PIECE {
+            let first = total(&trial(gpu, args, job, side.min(PIECE_AT_MOST))?);
             trials = trial(gpu, args, job, side.min(PIECE_AT_MOST))?;
-            took += total(&trials);
+            took += first + total(&trials);
+            once = once.max(first - total(&trials));
         }
         let mut stages = job.stages()?;
         for (stage, measured) in stages.iter_mut().zip(&trials) {
@@ -63,7 +66,7 @@ impl Estimate {
             }
         }
         let bytes = job.files().iter().map(|(_, bytes)| bytes).sum();
-        Ok(Self { stages, trial: trials, once: (cold - warm).max(0.0), took, bytes })
+        Ok(Self { stages, trial: trials, once: once.max(0.0), took, bytes })
     }
 
     fn seconds(&self) -> f64 {

@@ -140,7 +140,7 @@ fn say(args: &InfoArgs, facts: &Value) {
     line(
         "memory",
         format!(
-            "render --bounces 0 {}, with 1 {}, sky view {}",
+            "render --bounces 0 {}, render --bounces 1 {}, sky view {}",
             memory("render"),
             memory("render_bounces_1"),
             memory("sky_view")

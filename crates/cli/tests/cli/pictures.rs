@@ -81,8 +81,8 @@ fn gpu_level_ground_is_not_white() {
     }
 }
 
-/// `render` adds no bounce if the user gives a light or `--bounces`, to files of radiance, with `--max-error`, where it would not
-/// change the picture, and where it would use brute force.
+/// `render` adds no bounce with a light, `--bounces` or `--max-error`; to an `.exr`; where the picture would not change; where brute
+/// force would be used.
 #[test]
 fn gpu_only_default_light_gets_a_bounce() {
     let folder = Folder::new();

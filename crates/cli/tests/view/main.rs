@@ -158,7 +158,7 @@ fn gpu_window_equals_render() {
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
 }
 
-/// Without flags, the window equals `render --bounces 0`, by day and at night.
+/// The window equals `render --bounces 0` under the default light and at night (`--sun 10,-5`).
 #[test]
 fn gpu_default_window_equals_render() {
     let (folder, display) = (Folder::new(), Display::new());

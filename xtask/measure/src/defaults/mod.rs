@@ -70,10 +70,10 @@ pub fn run(mut args: Args) -> Outcome {
     let mut gpu = args.open()?;
     let Quality { azimuths, sun_azimuths, .. } = Quality::default();
     println!(
-        "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices for 25° of a key light; medians of {TURNS}, drawn in \
+        "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices for a key light up to 25° wide, more in proportion for a wider one; medians of {TURNS}, drawn in \
          turn (exact lines and brute force once)\n\
          Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
-         {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {FINER} times as many slices; `--lines exact` refuses key lights\n\
+         {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
          f64 oracle in theirs at {PICKS} grid points\n\
          Borders: plane with all settings, the others with fewer; periodic on the first field of each ground\n\

@@ -15,7 +15,7 @@ const MODES: [&str; 17] = [
      {1;aimed-around@5}° at 99.9 %; sky light {1;aimed-around@7} % with 64 azimuths",
     "horizons: `--method pyramid` | approximate | pyramids_mt_washington_256 | horizons {4;2;stack@4}° mean; sky light \
      {4;2;stack@7} %",
-    "environment by tables | approximate | accuracy_N44W072 | {64@1} % with 64 azimuths",
+    "environment by tables | approximate | accuracy_mt_washington_256 | {64@1} % with 64 azimuths",
     "environment by SH, order 4 | approximate | soft_converge | {exact horizons@2} %",
     "sun, 0.53° wide, 8 slices: the default | exact but for its slices | suns | at most {max@5} % against brute force in the \
      same slices",
@@ -53,7 +53,9 @@ fn figure(file: &str, place: &str) -> Result<String> {
     let mut rows = text.lines().filter(|line| line.starts_with('|')).map(cells);
     if begin == "max" {
         let values = rows.filter_map(|row| row.get(column)?.parse::<f64>().ok());
-        return values.max_by(f64::total_cmp).map(|v| format!("{v:.2}")).ok_or_else(missing);
+        // Three decimals below 0.01, so that small errors do not print as 0.
+        let digits = |v: f64| if v < 0.01 { format!("{v:.3}") } else { format!("{v:.2}") };
+        return values.max_by(f64::total_cmp).map(digits).ok_or_else(missing);
     }
     let begin: Vec<&str> = begin.split(';').collect();
     let row = rows.find(|row| row.starts_with(&begin)).ok_or_else(missing)?;

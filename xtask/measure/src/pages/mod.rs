@@ -118,6 +118,13 @@ fn package() -> Result<String> {
     Ok(format!("{} (`tools/bench --only package`{made}).\n", body.trim_end()))
 }
 
+/// Rounds to three significant digits and at most one decimal. Confidence intervals of times are wider than that.
+fn three(value: f64) -> String {
+    let decimals = if value < 100.0 { 1 } else { 0 };
+    let scale = 10_f64.powi(value.log10().floor() as i32 - 2);
+    format!("{:.decimals$}", (value / scale).round() * scale)
+}
+
 fn sizes() -> Result<String> {
     let figures = Figures::read("sizes")?;
     let distinct = |key: &str| {
@@ -129,6 +136,7 @@ fn sizes() -> Result<String> {
     let (sides, counts) = (distinct("cols"), distinct("azimuths"));
     let heads: String = counts.iter().map(|m| format!(" {m} azimuths |")).collect();
     let mut out = format!("| field |{heads}\n|---|{}\n", "---|".repeat(counts.len()));
+    let mut widest = 0.0;
     for side in &sides {
         out += &format!("| {side}² |");
         for count in &counts {
@@ -142,12 +150,20 @@ fn sizes() -> Result<String> {
             let ms = figures.number(row, "median_ns")? * 1e-6;
             let error = settings["light_error"].as_f64().map(|v| format!("{:.2} %", 100.0 * v));
             let error = error.as_deref().unwrap_or("error not measured");
-            out += &format!(" {ms:.1} ms, {mb:.1} MB, {error} |");
+            if let [Some(low), Some(high)] =
+                ["median_low_ns", "median_high_ns"].map(|key| row[key].as_f64())
+            {
+                widest = f64::max(widest, 1e-6 * (high - low) / ms);
+            }
+            out += &format!(" {} ms, {} MB, {error} |", three(ms), three(mb));
         }
         out.push('\n');
     }
-    let about = "Whole frames of a fractal under a uniform sky; memory of all images and buffers; RMSE relative to the mean light, \
-                 against the f64 oracle.";
+    let about = format!(
+        "Medians of whole frames of a fractal under a uniform sky, with 95 % intervals up to {:.0} % wide; memory of all images and \
+         buffers; RMSE relative to the mean light, against the f64 oracle at about 100 grid points.",
+        100.0 * widest
+    );
     Ok(format!("{out}\n{about}\n{}", figures.caption()?))
 }
 

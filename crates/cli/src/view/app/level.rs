@@ -315,7 +315,7 @@ pub fn grid_work(scene: &Scene, quality: &Quality, of: usize, side: usize) -> f6
     }
 }
 
-/// Texels times azimuths, with a sun or a sphere light as eight, on blocks of `side` grid points.
+/// Texels times azimuths, with a sun or a sphere light as eight and key lights by their slices, on blocks of `side` grid points.
 pub fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
     let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
     let lights = &scene.lights;
