@@ -567,7 +567,7 @@ mod tests {
         // The worst of several, and their number.
         let said = noise(&[row("total", 2.0), row("total", 1.5), row("total", 3.0)]).unwrap();
         assert!(
-            said.contains(" spans 20 %") && said.ends_with("; 2 of 3 totals span more than that"),
+            said.contains(" spans 19 %") && said.ends_with("; 2 of 3 totals span more than that"),
             "{said}"
         );
         // Too few runs for an interval say nothing.
