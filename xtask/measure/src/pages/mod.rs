@@ -160,8 +160,8 @@ fn sizes() -> Result<String> {
         out.push('\n');
     }
     let about = format!(
-        "Medians of whole frames of a fractal under a uniform sky (95 % intervals up to {:.0} % wide); memory of all images and \
-         buffers; RMSE over the mean light, against the f64 oracle.",
+        "Medians of whole frames of a fractal under a uniform sky (95 % intervals up to {:.0} % wide); memory of images and \
+         buffers; RMSE over mean light, against the f64 oracle.",
         100.0 * widest
     );
     Ok(format!("{out}\n{about}\n{}", figures.caption()?))

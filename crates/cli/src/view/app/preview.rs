@@ -22,8 +22,8 @@ use super::level::{
 use crate::render;
 use crate::setup::total_ns;
 
-/// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
+/// Intended GPU times of a preview's grids: with drawing, copies and the panel, 15 pictures per second.
+const INTENDED_MS: [f64; GRIDS] = [5.0, 12.0, 21.0];
 /// The part of the slopes' time that is left where a camera draws a mesh.
 const WITH_MESH: f64 = 0.4;
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
@@ -239,23 +239,21 @@ impl Preview {
         Ok(())
     }
 
-    /// Makes the levels if there are none. If the present ones are too slow or too coarse for a drag, a thread makes others, and the
-    /// first input after it finishes uses them. Edited and animated heights, and sides that a script gives, wait for new levels.
+    /// Makes the levels if there are none. If the present ones are too slow for a drag, a thread makes others, and the first input after
+    /// it finishes uses them. Edited and animated heights, and sides that a script gives, wait for new levels.
     fn fit(&mut self, screen: &mut Screen, state: &State, is_edited: bool) -> Result<()> {
+        let Some(sides) = self.other_grids(state, DRAGGED) else { return Ok(()) };
         let is_animated = state.is_moving() || is_edited;
-        let waits = self.levels.is_none() || self.fixed.is_some() || is_animated;
-        if let Some(grounds) = finished(&mut self.next_grids).filter(|_| !waits) {
+        if self.levels.is_none() || self.fixed.is_some() || is_animated {
+            self.end(screen)?;
+            self.next_grids = None;
+            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
+        } else if let Some(grounds) = finished(&mut self.next_grids) {
             let grounds = grounds?;
             self.end(screen)?;
             self.levels = Some(levels_of(grounds));
-        } else if let Some(sides) = self.other_grids(state, DRAGGED) {
-            if waits {
-                self.end(screen)?;
-                self.next_grids = None;
-                self.levels = Some(levels_of(grounds(&state.scene, sides)?));
-            } else {
-                self.start_grids(state, sides);
-            }
+        } else {
+            self.start_grids(state, sides);
         }
         Ok(())
     }
