@@ -51,6 +51,41 @@ fn rio_cogeo_accepts_maps() {
     assert!(error.contains("not tiled"), "{error}");
 }
 
+/// QGIS shows maps, and a picture with its world file, where it shows the input, with the same reference system, named bands and no data
+/// as NaN. A picture has no reference system.
+#[test]
+#[ignore = "needs QGIS for Python: Debian's python3-qgis"]
+fn qgis_shows_maps_where_the_input_is() {
+    let folder = folder();
+    done(&folder, "hillshade utm.tif -o hillshade.tif");
+    done(&folder, "horizon utm.tif --azimuths 4 -o horizon.tif");
+    done(&folder, "render utm.tif --azimuths 4 -o picture.png");
+    let program = "import sys\n\
+        from qgis.core import QgsApplication, QgsRasterLayer\n\
+        app = QgsApplication([], False)\n\
+        app.initQgis()\n\
+        for name in sys.argv[1:]:\n\
+        \x20   layer = QgsRasterLayer(name, name)\n\
+        \x20   source = layer.dataProvider()\n\
+        \x20   bands = [layer.bandName(band + 1).split(': ')[-1] for band in range(layer.bandCount())]\n\
+        \x20   void = source.sourceNoDataValue(1) if source.sourceHasNoDataValue(1) else None\n\
+        \x20   print(name, layer.isValid(), layer.crs().authid() or '-', layer.extent().toString(6), void, *bands, sep='|')\n";
+    let mut command = Command::new("/usr/bin/python3");
+    command.env("QT_QPA_PLATFORM", "offscreen").args(["-c", program]);
+    command.args(["utm.tif", "hillshade.tif", "horizon.tif", "picture.png"]);
+    let found = output(&folder, &mut command).unwrap();
+    let rows: Vec<Vec<&str>> = found.lines().map(|line| line.split('|').collect()).collect();
+    let [input, maps @ .., picture] = rows.as_slice() else { panic!("{found}") };
+    assert_eq!(input[1..3], ["True", "EPSG:32633"]);
+    for map in maps {
+        assert_eq!((&map[1..4], map[4]), (&input[1..4], "nan"), "{found}");
+    }
+    assert_eq!(maps[0][5..], ["hillshade"]);
+    let azimuths = ["azimuth_000.0", "azimuth_090.0", "azimuth_180.0", "azimuth_270.0"];
+    assert_eq!(maps[1][5..], azimuths);
+    assert_eq!((picture[1], picture[2], picture[3]), ("True", "-", input[3]), "{found}");
+}
+
 /// ktx-parse reads the format, size and mip levels of each texture. Each level has the length that its blocks need. A truncated file
 /// is refused.
 #[test]
