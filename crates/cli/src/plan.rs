@@ -49,6 +49,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
             if let Some(view) = &view {
                 crate::say!("\n{}", view.to_string().trim_end());
             }
+            setup::say_light(&args.lights, &scene, None);
         }
         PlanFormat::Json => crate::say!("{:#}", json(&plan, view.as_ref())),
         PlanFormat::Dot => crate::say!("{}", dot(&plan, view.as_ref()).trim_end()),

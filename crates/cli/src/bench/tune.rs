@@ -127,7 +127,8 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         paths => setup::field(paths, &args.surface, global)?,
     };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let scene = Scene { field, surface: Surface::default(), lights };
+    let surface = Surface { border: setup::border(&args.surface), ..Surface::default() };
+    let scene = Scene { field, surface, lights };
     let inputs = plan::picture_inputs(&scene);
     let (scene, quality, want) = (&scene, &quality, Vec::new());
     let mut search = Search { scene, quality, limits, inputs: &inputs, want };
@@ -302,6 +303,9 @@ fn line(trial: &Trial) -> String {
         Trial { failed: Some(why), .. } => format!("failed: {why}"),
         Trial { is_same: false, .. } => "different bits: rejected".into(),
         Trial { interval: Some(_), .. } => ratio_text(trial),
+        Trial { ratio, .. } if *ratio > HOPELESS => {
+            format!("{ratio:.2} (slower: timed for few pairs only)")
+        }
         Trial { ratio, .. } => format!("{ratio:.2} (too few pairs for an interval)"),
     };
     format!("  {:<98} {found}", text(&trial.form))

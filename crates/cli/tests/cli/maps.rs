@@ -170,7 +170,7 @@ fn wrong_maps_are_refused() {
     refused(
         &folder,
         &[
-            ("hillshade a.asc -o o.txt", 2, &["-o: found o.txt", ".npy or .exr or .png"]),
+            ("hillshade a.asc -o o.txt", 2, &["-o: found o.txt", ".npy, .exr or .png"]),
             ("hillshade a.asc -o a.asc", 2, &["-o"]),
             ("hillshade a.npy -o a.npy", 2, &["which is the input"]),
             ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
