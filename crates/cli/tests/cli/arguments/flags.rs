@@ -332,7 +332,11 @@ fn outputs() {
             ("render a.asc -o out.jpg", 2, &["-o: found out.jpg", ".exr, .tif, .tiff or .png"]),
             ("render a.asc -o out", 2, &["-o: found out"]),
             ("render a.asc -o out.npy", 2, &["-o: found out.npy"]),
-            ("horizon a.asc -o out.jpg", 2, &["-o: found out.jpg", ".npy, .tif, .tiff, .exr or .png"]),
+            (
+                "horizon a.asc -o out.jpg",
+                2,
+                &["-o: found out.jpg", ".npy, .tif, .tiff, .exr or .png"],
+            ),
             ("render a.asc -o no/out.exr", 2, &["-o", "a folder no"]),
             ("render a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
             ("render a.asc -o folder.png", 2, &["-o: found the directory folder.png"]),
