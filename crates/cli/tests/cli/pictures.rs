@@ -111,6 +111,43 @@ fn gpu_only_default_light_gets_a_bounce() {
     }
 }
 
+/// The estimate agrees with bounces that are computed: where `render` adds one, 5 % of the ground gains at least half of the 2 % that it
+/// asks for, elsewhere at most twice as much. Ground is brighter or darker than the level ground of the estimate by its cosine to the
+/// sun, 1 / sin 35° = 1.7 times at most.
+#[test]
+fn gpu_a_bounce_is_added_where_it_adds_light() {
+    let folder = Folder::new();
+    let made = [
+        ("hills", fractal(128, 4), true),
+        ("city", terrain::city(128), true),
+        ("dunes", terrain::dunes(128), false),
+        ("coast", terrain::coast(128), false),
+    ];
+    for (name, field, is_added) in made {
+        let input = write(&folder, &format!("{name}.npy"), &field.unwrap());
+        let run = succeeded(&folder, &format!("render {input} --albedo 0.3 -o out.png"));
+        assert_eq!(run.out.contains("--bounces 1"), is_added, "{name}: {}", run.out);
+        let [with, without] = [1, 0].map(|bounces| {
+            let args =
+                format!("render {input} --albedo 0.3 --bounces {bounces} -o out.exr --quiet");
+            succeeded(&folder, &args);
+            ridgelight_io::read_planes(&folder.path("out.exr")).unwrap().planes
+        });
+        let planes = with.iter().zip(&without).map(|(with, without)| {
+            let gains = with.iter().zip(without).map(|(a, b)| f64::from(a - b) / 0.3);
+            gains.collect::<Vec<_>>()
+        });
+        let planes: Vec<Vec<f64>> = planes.collect();
+        let mean =
+            |i: usize| planes.iter().map(|plane| plane[i]).sum::<f64>() / planes.len() as f64;
+        let mut gains: Vec<f64> = (0..planes[0].len()).map(mean).collect();
+        gains.sort_by(f64::total_cmp);
+        let least = gains[gains.len() * 95 / 100];
+        println!("{name}: {least:.4}");
+        assert!(if is_added { least >= 0.01 } else { least <= 0.04 }, "{name}: {least}");
+    }
+}
+
 /// The printed flags give the same picture, as a map and before a camera.
 #[test]
 fn gpu_default_light_is_that_of_its_flags() {
