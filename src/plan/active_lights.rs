@@ -266,6 +266,15 @@ impl<'a> ActiveLights<'a> {
         let across =
             |key| azimuths::across_key(key, self.key_azimuths(key, quality.sun_azimuths), cell_m);
         lists.extend(self.keys.iter().map(|(_, key)| across(key)));
+        for (i, key) in &self.keys {
+            let slices = key.slices(quality.sun_azimuths);
+            // More for specular have a note of their own.
+            if slices > quality.sun_azimuths
+                && slices == self.key_azimuths(key, quality.sun_azimuths)
+            {
+                notes.push(format!("key {}: {slices} slices, as it is wider than 25°", i + 1));
+            }
+        }
         Ok(lists)
     }
 
@@ -293,7 +302,7 @@ impl<'a> ActiveLights<'a> {
         narrowest.map_or(0, |n| (2.0 * width_rad * (n + 1.0).sqrt()).ceil() as u32)
     }
 
-    /// Notes on the slices of key lights, and on their shadows with specular.
+    /// Notes on what specular changes for key lights.
     pub(super) fn key_notes(&self, quality: &Quality) -> Vec<String> {
         let mut notes = Vec::new();
         if self.keys.iter().any(|(_, key)| Shadows::suits(key)) {
@@ -305,9 +314,6 @@ impl<'a> ActiveLights<'a> {
         for (i, key) in &self.keys {
             let (number, count) = (i + 1, self.key_azimuths(key, quality.sun_azimuths));
             let slices = key.slices(quality.sun_azimuths);
-            if slices == count && slices > quality.sun_azimuths {
-                notes.push(format!("key {number}: {slices} slices, as it is wider than 25°"));
-            }
             if count < self.specular_azimuths(key) {
                 let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
                 notes.push(format!(

@@ -352,6 +352,8 @@ fn key_lights() {
     let lit = picture(&dropped, Border::Open);
     // 28.6° wide: 8 × 28.6 / 25 = 9 slices.
     assert_eq!(lit.azimuths.len(), 8 + 9);
+    let wide = "key 2: 9 slices, as it is wider than 25°";
+    assert!(lit.notes.iter().any(|n| n == wide), "{:?}", lit.notes);
     let visible: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
     assert_eq!(visible, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);
     let outputs: Vec<&str> = lit.outputs().map(|(_, r)| r.name.as_str()).collect();
