@@ -381,11 +381,15 @@ pub struct BenchArgs {
     #[arg(long, default_value_t = 200, value_name = "K", value_parser = number::<usize>("a whole number from 1 to 100000"), allow_negative_numbers = true, help_heading = "Quality")]
     pub runs: usize,
     /// Also time sweeps with every setting, brute force, and a scalar sweep on the CPU
+    ///
+    /// Each row has the time of one azimuth, that of the scalar sweep beside it, and their ratio. docs/choosing-settings.md
+    /// explains the columns.
     #[arg(long, help_heading = "Output")]
     pub forms: bool,
     /// Time whole frames of fractal fields of these sides instead
     ///
-    /// Rows are printed as they are measured. --json is written after the last one.
+    /// Each row has the time of a frame, its device memory, and the error of its light. Rows are printed as they are
+    /// measured; --json is written after the last one.
     #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", value_parser = number::<usize>(SIDE), allow_negative_numbers = true, conflicts_with_all = ["input", "forms", "trace", "passes"])]
     pub sizes: Vec<usize>,
     /// Time each of --sizes with these numbers of azimuths

@@ -75,6 +75,12 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     // Verification is slow.
+    if let Some(earlier) = earlier.as_ref().filter(|_| !args.forms) {
+        let sides = args.sizes.iter().map(|side| [*side as u32; 2]);
+        let all: Vec<_> = sides.flat_map(|size| counts.iter().map(move |n| (size, *n))).collect();
+        let one = [(plan.size, quality.azimuths)];
+        earlier.check_any(if args.sizes.is_empty() { &one } else { &all })?;
+    }
     if args.sizes.is_empty() {
         check_names(&args.passes, &plan, args.forms.then_some(&quality))?;
     }
@@ -149,17 +155,20 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     bar.finish_and_clear();
     warnings.extend(noise(&all));
     let changes = earlier.as_ref().map(|earlier| earlier.against(&all, &peaks));
-    if let Some(changes) = &changes {
-        warnings.extend(changes.warnings(&device, &driver));
+    let limits_of_verdicts = changes.as_ref().map(|changes| changes.warnings(&device, &driver));
+    let limits_of_verdicts = limits_of_verdicts.unwrap_or_default();
+    if !quiet {
+        warnings.iter().for_each(|warning| crate::say!("{warning}"));
+        changes.iter().for_each(|changes| changes.print(&limits_of_verdicts));
     }
+    warnings.extend(limits_of_verdicts);
     if quiet {
         warnings.iter().for_each(|text| setup::warning(text));
-    } else {
-        changes.iter().for_each(|changes| changes.print());
-        warnings.iter().for_each(|warning| crate::say!("{warning}"));
     }
     if let Some(path) = &args.bencher {
-        files::write_json(path, &rows::bencher(&all))?;
+        let mut given = plan.settings.clone();
+        given.retain(|(name, _)| args.quality.gives(name));
+        files::write_json(path, &rows::bencher(&all, &given))?;
     }
     if let Some(path) = &args.global.json {
         let argv: Vec<_> =

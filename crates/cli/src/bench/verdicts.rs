@@ -187,15 +187,16 @@ impl Changes<'_> {
         })
     }
 
-    /// The table.
-    pub fn print(&self) {
-        let commit = &self.earlier.last().commit;
-        let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };
-        crate::say!("\ncompared with the earlier report{of}");
+    /// What limits the comparison, then the table.
+    pub fn print(&self, warnings: &[String]) {
+        crate::say!("\ncompared with {}", self.earlier.text());
+        warnings.iter().for_each(|warning| crate::say!("{warning}"));
         crate::say!(
-            "{:<34} {:<9} {:>10} {:>10} {:>7} {:>15}  verdict",
+            "{:<34} {:<10} {:>11} {:>8} {:>10} {:>10} {:>7} {:>15}  verdict",
             "pass",
             "mode",
+            "texels",
+            "azimuths",
             "earlier ms",
             "now ms",
             "ratio",
@@ -203,10 +204,13 @@ impl Changes<'_> {
         );
         for Change { row, earlier_ns, ratio, bounds, verdict, .. } in &self.changes {
             let bounds = bounds.map(|[low, high]| format!("{low:.3} to {high:.3}"));
+            let [cols, rows] = row.size;
             crate::say!(
-                "{:<34} {:<9} {:>10} {:>10} {:>7} {:>15}  {verdict}",
+                "{:<34} {:<10} {:>11} {:>8} {:>10} {:>10} {:>7} {:>15}  {verdict}",
                 row.pass,
                 row.mode,
+                format!("{cols}x{rows}"),
+                row.azimuths,
                 figure(earlier_ns.map(|ns| ns * 1e-6), 3),
                 figure(row.times.map(|t| t.median * 1e-6), 3),
                 figure(*ratio, 3),

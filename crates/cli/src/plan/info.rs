@@ -4,7 +4,7 @@ use ridgelight::Result;
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
 use ridgelight_io as files;
-use ridgelight_io::{FieldFile, Georeference};
+use ridgelight_io::FieldFile;
 use serde_json::{Value, json};
 
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
     }
     if !args.global.quiet && !is_printed {
         say(args, &facts);
-        say_start(args, &read.field, read.georeference.as_ref())?;
+        say_start(args, &read)?;
     } else {
         let path = args.input.names();
         read.warnings
@@ -172,10 +172,10 @@ fn values(facts: &Value) -> String {
 }
 
 /// Prints a command that the present device can run, and why it is not the plainest one.
-fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) -> Result<()> {
+fn say_start(args: &InfoArgs, read: &FieldFile) -> Result<()> {
     let (device, limits) = super::limits(&args.global)?;
     let is_given = args.global.memory_budget.is_some();
-    let (start, why) = start::start(field, at, &limits, is_given);
+    let (start, why) = start::start(&read.field, read.georeference.as_ref(), &limits, is_given);
     if let Some(why) = why {
         let why = setup::in_flags(why);
         crate::say!("  {:<10} {device} cannot render the whole field by default: {why}", "note");
@@ -193,6 +193,8 @@ fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) ->
     let FieldArgs { cell, z_scale, nodata, band, mut bbox, .. } = args.surface;
     if let Some([x, y]) = cell {
         command += &format!(" --cell {x},{y}");
+    } else if !read.stored.has_cell_size {
+        command += " --cell X,Y";
     }
     if let Some(z_scale) = z_scale {
         command += &format!(" --z-scale {z_scale}");
@@ -218,5 +220,10 @@ fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) ->
         _ => {}
     }
     crate::say!("{command} -o picture.png");
+    if cell.is_none() && !read.stored.has_cell_size {
+        crate::say!(
+            "where X,Y is the grid spacing in the unit of the heights, west to east and south to north."
+        );
+    }
     Ok(())
 }

@@ -235,6 +235,10 @@ pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
         percent(trial.measured.error),
         percent(trial.measured.at_most),
     )];
+    if let Goal::MaxCost(most) = goal {
+        let [time, most] = [trial.ns, most].map(|ns| digits(ns / 1e6));
+        all.push(format!("judged by {time} ms, the median time of its frames, for at most {most} ms; the first frame takes longer"));
+    }
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
     if let Some(last) = missed.last() {
         let (went, by) = match goal {

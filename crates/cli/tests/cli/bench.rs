@@ -51,6 +51,8 @@ fn gpu_an_earlier_report_gives_verdicts() {
             folder.run(&[&base[..], &["--against", &file, "--json", "verdicts.json"]].concat());
         assert_eq!(run.status, Some(status), "{}{}", run.out, run.err);
         assert_eq!(run.out.matches(word).count(), rows.len(), "{}", run.out);
+        assert_eq!(run.out.matches(" 32x32 ").count(), rows.len(), "{}", run.out);
+        assert!(run.out.contains("compared with 1 earlier report of commit "), "{}", run.out);
         let found: Value =
             serde_json::from_slice(&std::fs::read(folder.path("verdicts.json")).unwrap()).unwrap();
         assert_eq!(found["against"]["rows"][0]["verdict"], word);
@@ -66,7 +68,16 @@ fn gpu_an_earlier_report_gives_verdicts() {
     let other = ["bench", "--size", "48", "--azimuths", "8", "--runs", "1"];
     let run = folder.run(&[&other[..], &SMALL, &["--against", "now.json,slow.json"]].concat());
     assert_eq!(run.status, Some(2), "{}", run.err);
-    assert!(run.err.contains("no row of this run in now.json, slow.json"), "{}", run.err);
+    let expected = "found a report of 32x32 texels with 8 azimuths, expected rows of 48x48 texels with 8 azimuths";
+    assert!(run.err.contains(expected), "{}", run.err);
+    // Before anything is verified or timed.
+    assert_eq!(run.out, "", "{}", run.err);
+    let mut gone = report.clone();
+    gone["rows"].as_array_mut().unwrap().iter_mut().for_each(|row| row["pass"] = "gone".into());
+    std::fs::write(folder.path("gone.json"), gone.to_string()).unwrap();
+    let run = folder.run(&[&base[..], &["--against", "gone.json"]].concat());
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(run.err.contains("no row of this run in gone.json"), "{}", run.err);
     std::fs::write(folder.path("field.json"), "[]").unwrap();
     let run = folder.run(&[&base[..], &["--against", "field.json"]].concat());
     assert_eq!((run.status, run.out.as_str()), (Some(1), ""), "{}", run.err);

@@ -202,6 +202,8 @@ fn info_states_what_a_file_holds() {
         "{}",
         run.out
     );
+    let start = "Start with: ridgelight render steep.png --cell X,Y -o picture.png\nwhere X,Y is";
+    assert!(run.out.contains(start), "{}", run.out);
     // Four cells of 16.7 km: (66.8 km)² / (2 · 6371 km) = 350 m.
     let run = folder.run_without_driver(&["info", "steep.png", "--cell", "16700"]);
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);

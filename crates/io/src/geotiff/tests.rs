@@ -165,6 +165,33 @@ fn a_position_is_read_back() {
     assert_eq!(at.keys, keys.horizontal());
 }
 
+/// GDAL reads a BigTIFF, its bands and its overview: 1024 x 513 grid points have one. (Written small: a file that must be one has 4 GiB.)
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_reads_a_big_tiff() {
+    let folder = tempfile::tempdir().unwrap();
+    let size @ [cols, rows] = [1024, 513];
+    let path = folder.path().join("big.tif");
+    let bytes = written(size, 2, true);
+    // Version 43 with offsets of 8 bytes.
+    assert_eq!(bytes[..8], [b'I', b'I', 43, 0, 8, 0, 0, 0]);
+    std::fs::write(&path, &bytes).unwrap();
+    let read = |options: &[&str]| {
+        let plain = folder.path().join("plain");
+        let mut command = std::process::Command::new("gdal_translate");
+        command.args(["-q", "-ot", "Float32", "-of", "ENVI", "-co", "INTERLEAVE=BSQ"]);
+        let status = command.args(options).arg(&path).arg(&plain).status();
+        assert!(status.expect("gdal_translate: run tools/setup --tests").success());
+        let bytes = std::fs::read(plain).unwrap();
+        bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect::<Vec<_>>()
+    };
+    let planes = [plane(0, size), plane(1, size)];
+    assert_eq!(bits(&read(&[])), bits(&planes.concat()));
+    let overviews = planes.each_ref().map(|plane| tiles::halved(plane, size)).concat();
+    assert_eq!(overviews.len(), 2 * (cols / 2) * rows.div_ceil(2));
+    assert_eq!(bits(&read(&["-oo", "OVERVIEW_LEVEL=0"])), bits(&overviews));
+}
+
 /// A length that 32 bits hold is that of a classic TIFF; from 2^32 on the file is a BigTIFF.
 #[test]
 fn a_file_of_4_gib_is_big() {

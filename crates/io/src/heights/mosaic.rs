@@ -24,7 +24,7 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let Tile { path: first, raster: grid, .. } = &tiles[0];
     let (first, at) = (first.clone(), placed(first, grid)?.clone());
     let (cell, cell_unit_m) = (grid.cell, grid.cell_unit_m);
-    let StoredHeights { data_type, nodata, scale, unit_m } = grid.stored();
+    let StoredHeights { data_type, nodata, scale, unit_m, .. } = grid.stored();
     let mut corners = Vec::with_capacity(tiles.len());
     for Tile { path, raster, .. } in &tiles {
         let own = placed(path, raster)?;

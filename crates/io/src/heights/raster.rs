@@ -16,6 +16,8 @@ pub struct StoredHeights {
     pub scale: [f64; 2],
     /// Metres in the file's unit of height; `None` where the file states none that is known, and the unit is read as a metre.
     pub unit_m: Option<f64>,
+    /// Whether the file states the size of its cells.
+    pub has_cell_size: bool,
 }
 
 /// The name of a type of values: `kind` is that of NumPy, `i`, `u` or `f`.
@@ -92,7 +94,8 @@ impl Raster {
     /// How the file stores the heights.
     pub fn stored(&self) -> StoredHeights {
         let Self { nodata, scale, unit_m, .. } = *self;
-        StoredHeights { data_type: self.data_type.clone(), nodata, scale, unit_m }
+        let has_cell_size = self.cell != Cell::Unknown;
+        StoredHeights { data_type: self.data_type.clone(), nodata, scale, unit_m, has_cell_size }
     }
 
     /// Marks voids and converts heights to metres, with notes on what was converted and warnings of what may be wrong.
@@ -196,7 +199,7 @@ impl Raster {
     /// What is assumed of cells of unknown size.
     pub fn cell_warning(&self) -> Option<String> {
         let text = "the file has no cell size: `cell_m` 1 is assumed";
-        (self.cell == Cell::Unknown).then(|| text.to_owned())
+        (!self.stored().has_cell_size).then(|| text.to_owned())
     }
 }
 

@@ -97,6 +97,46 @@ impl Earlier {
         self.0.last().expect("at least one")
     }
 
+    /// "2 earlier reports of commit 1a2b3c4d", with every commit once.
+    pub fn text(&self) -> String {
+        let mut commits: Vec<&str> = Vec::new();
+        for Report { commit, .. } in &self.0 {
+            if !commit.is_empty() && !commits.contains(&&**commit) {
+                commits.push(commit);
+            }
+        }
+        let reports = match self.0.len() {
+            1 => "1 earlier report".to_owned(),
+            count => format!("{count} earlier reports"),
+        };
+        match &commits[..] {
+            [] => reports,
+            [one] => format!("{reports} of commit {one}"),
+            all => format!("{reports} of commits {}", all.join(", ")),
+        }
+    }
+
+    /// Refuses a run of these columns, rows and azimuths if no report has a row of any of them.
+    ///
+    /// # Errors
+    /// As above; the error lists what the last report has.
+    pub fn check_any(&self, wanted: &[([u32; 2], u32)]) -> Result<()> {
+        let text = |all: &[([u32; 2], u32)]| {
+            let of = |([cols, rows], azimuths): &([u32; 2], u32)| {
+                format!("{cols}x{rows} texels with {azimuths} azimuths")
+            };
+            all.iter().map(of).collect::<Vec<_>>().join(", ")
+        };
+        let of = |row: &EarlierRow| ([row.cols, row.rows], row.azimuths);
+        if self.0.iter().flat_map(|report| &report.rows).any(|row| wanted.contains(&of(row))) {
+            return Ok(());
+        }
+        let mut has: Vec<_> = self.last().rows.iter().map(of).collect();
+        has.dedup();
+        let found = format!("a report of {}", text(&has));
+        Err(Error::setting("--against", found, format!("rows of {}", text(wanted))))
+    }
+
     /// Whether a report does not state its scene.
     pub fn has_unknown_scene(&self) -> bool {
         self.0.iter().any(|report| report.scene.is_none())
