@@ -138,7 +138,7 @@ void march_line(int line, int end, int total) {
     int row = (lanes + 3) & ~3;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    origin = (flips_march ? (steps - 1) * row : 0) + (flips_lanes ? lanes - 1 : 0);
+    origin = LANE_BUFFER_PAD + (flips_march ? (steps - 1) * row : 0) + (flips_lanes ? lanes - 1 : 0);
     step_stride = flips_march ? -row : row;
     lane_stride = flips_lanes ? -1 : 1;
     int segments = int(gl_WorkGroupSize.y);

@@ -17,6 +17,15 @@ vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
     bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int mirrored = lanes - 4 - lane;
     int first = flips ? mirrored : lane;
+#ifdef LANE_BUFFER
+    if (READS_LANE_BUFFER) {
+        // A clamped index moves only lanes beyond the field.
+        int length = (lanes + 3) & ~3;
+        uint base = uint(clamp(LANE_BUFFER_PAD + march * length + first, 0, LANE_BUFFER_PAD + steps * length));
+        row = vec4(lane_buffer[base], lane_buffer[base + 1u], lane_buffer[base + 2u], lane_buffer[base + 3u]);
+        return mix(row, row.wzyx, bvec4(flips));
+    }
+#endif
     int last_texel = (lanes - 1) >> 2;
     vec4 a = imageLoad(lane_heights, ivec2(clamp(first >> 2, 0, last_texel), march));
     vec4 b = imageLoad(lane_heights, ivec2(clamp((first >> 2) + 1, 0, last_texel), march));

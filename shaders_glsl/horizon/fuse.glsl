@@ -1,3 +1,4 @@
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/half.glsl"
 #include "shared/nodes.glsl"
 #include "horizon/met.glsl"
@@ -87,25 +88,12 @@ vec4 slopes_of(uvec4 values) {
     return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
 }
 
-// Lane positions at the far end of a step on the own lines of four grid points, the step's number, and whether a line has
-// that step.
-struct Segment {
-    ivec4 y;
-    vec4 back;
-    bvec4 exists;
-};
-
-// Where the lines cross edges of the surface, `u` of the step before its far end, between heights `far` and `near`.
-Met crossing_of(Azimuth azimuth, Segment segment, vec4 own, vec4 far, vec4 near, vec4 u, bvec4 crosses) {
-    bool wraps = BORDER == BORDER_PERIODIC;
-    // A line that does not repeat ends at the edge, half a unit of rounding aside.
-    bvec4 is_on = greaterThanEqual(vec4(segment.y) + u * float(azimuth.shear), vec4(wraps ? -4e9 : -0.5));
-    bvec4 meets = bvec4(uvec4(segment.exists) & uvec4(crosses) & uvec4(is_on) & uvec4(lessThan(u, vec4(1.0))));
-    Met met;
-    met.steps = segment.back - u;
-    met.slope = ((far - own) + u * (near - far)) * (1.0 / azimuth.step_m) / met.steps;
-    met.slope = mix(vec4(NO_SLOPE), met.slope, meets);
-    return met;
+// The higher of `met` and, where `counts`, the point that lies `u` of the way from height `a` to height `b`, `steps` steps ahead.
+// Slopes are rises per step.
+Met higher_where(vec4 own, bvec4 counts, Met met, vec4 a, vec4 b, vec4 u, vec4 steps) {
+    vec4 slope = ((a - own) + u * (b - a)) / steps;
+    bvec4 takes = bvec4(uvec4(counts) & uvec4(greaterThan(slope, met.slope)));
+    return Met(mix(met.slope, slope, takes), mix(met.steps, steps, takes));
 }
 
 // Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
@@ -115,11 +103,13 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    bvec4 split_along = bvec4(flips_march == flips_lanes);
-    bvec4 split_across = not(split_along);
+    bvec4 along = bvec4(flips_march == flips_lanes);
     ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
     int step = march_position(azimuth, q.march, steps);
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
+    float per_lane = 1.0 / max(advance, 1e-9);
+    float per_split_across = 1.0 / (1.0 + advance);
+    float per_split = flips_march == flips_lanes ? 1.0 / max(1.0 - advance, 1e-9) : per_split_across;
     vec4 own = q.here.four;
     ivec4 at = mix(other, nearer, greaterThan(nearer, ivec4(0)));
     ivec4 towards = mix(ivec4(0), sign(other - at), greaterThan(other, ivec4(0)));
@@ -127,6 +117,7 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
     ivec4 last = mix(ivec4(0), min(at + 1 + max(towards, 0), reach), greaterThan(at, ivec4(0)));
     // With shear 0 a line stays in its lane and leaves no side of the field.
     int edge = wraps || azimuth.shear == 0 ? -0x7fffffff : 0;
+    int lowest_on = wraps ? -0x7fffffff : 0;
 
     // near[i][k]: the height of lane near_cell[k] - 1 + i, for grid point k.
     ivec4 y = lane * CELL - (first - 1) * azimuth.shear;
@@ -136,11 +127,15 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
         near[k] = row_at(azimuth, near_cell[k] - 1, step - first[k] + 1, lanes, steps);
     }
     near = transpose(near);
-    // Two steps beside the proposal, and one more towards the other line's.
-    for (int i = 0; i < 3; i++) {
+    // Rises per step.
+    Met found = Met(vec4(NO_SLOPE), vec4(0.0));
+    // Unrolled, RADV takes more registers, and with specular a third fewer waves fit.
+    [[dont_unroll]] for (int i = 0; i < 3; i++) {
         ivec4 back = first + i;
         bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(y, ivec4(edge))));
         y -= azimuth.shear;
+        // Where the far end is off the field, the line leaves it through the edge of lane 0, which is the lane that it passes.
+        bvec4 is_on = bvec4(uvec4(exists) & uvec4(greaterThanEqual(y, ivec4(lowest_on))));
         ivec4 cell = y >> CELL_SHIFT;
         mat4 far;
         for (int k = 0; k < 4; k++) {
@@ -154,28 +149,27 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
         // As in segment_crossings: `from` and `end` are places across the cell of the step's far end.
         vec4 from = vec4(y & (CELL - 1)) * (1.0 / float(CELL));
         vec4 end = from + advance;
-        bvec4 inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
         bvec4 passes_lane = greaterThan(end, vec4(1.0 + HAIR));
-        bvec4 passes_split = mix(greaterThan(end, vec4(0.0)), inside, split_along);
-        bvec4 passes_next_split = bvec4(uvec4(passes_lane) & uvec4(split_across));
-        vec4 to_split = mix((1.0 - from) / (1.0 + advance), from / max(1.0 - advance, 1e-9), split_along);
-        vec4 far_of_split = mix(far[2], far[1], split_along);
-        vec4 near_of_split = mix(near_low, near_high, split_along);
-        Segment segment = Segment(y, vec4(back), exists);
-        Met next;
-        next.steps = segment.back;
-        next.slope = ((far[1] - own) + from * (far[2] - far[1])) * (1.0 / azimuth.step_m) / segment.back;
-        bvec4 on_field = bvec4(uvec4(exists) & uvec4(greaterThanEqual(y, ivec4(wraps ? -0x7fffffff : 0))));
-        next.slope = mix(vec4(NO_SLOPE), next.slope, on_field);
-        met = higher(met, next);
-        met = higher(met, crossing_of(azimuth, segment, own, far_of_split, near_of_split, to_split, passes_split));
-        vec4 to_lane = (1.0 - from) / max(advance, 1e-9);
-        met = higher(met, crossing_of(azimuth, segment, own, far[2], near_high, to_lane, passes_lane));
-        vec4 to_next_split = (2.0 - from) / (1.0 + advance);
-        met = higher(met, crossing_of(azimuth, segment, own, far[3], near_high, to_next_split, passes_next_split));
+        vec4 to_lane = (1.0 - from) * per_lane;
+        found = higher_where(own, is_on, found, far[1], far[2], from, vec4(back));
+        // A diagonal from (0, 0) to (1, 1) is crossed inside the cell, or else the lane line is. One from (1, 0) to (0, 1) is
+        // always crossed, then perhaps the lane line, then the next diagonal.
+        bvec4 is_lane = bvec4(uvec4(along) & uvec4(passes_lane));
+        bvec4 is_inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
+        bvec4 crosses = mix(greaterThan(end, vec4(0.0)), bvec4(uvec4(is_inside) | uvec4(passes_lane)), along);
+        crosses = bvec4(uvec4(crosses) & uvec4(mix(is_on, exists, is_lane)));
+        vec4 u = mix(mix(1.0 - from, from, along) * per_split, to_lane, is_lane);
+        vec4 far_end = mix(far[2], far[1], bvec4(uvec4(along) & uvec4(not(is_lane))));
+        found = higher_where(own, crosses, found, far_end, mix(near_low, near_high, along), u, vec4(back) - u);
+        bvec4 crosses_more = bvec4(uvec4(exists) & uvec4(passes_lane) & uvec4(not(along)));
+        found = higher_where(own, crosses_more, found, far[2], near_high, to_lane, vec4(back) - to_lane);
+        vec4 to_next = (2.0 - from) * per_split_across;
+        found = higher_where(own, crosses_more, found, far[3], near_high, to_next, vec4(back) - to_next);
         near = far;
         near_cell = cell;
     }
+    found.slope *= 1.0 / azimuth.step_m;
+    met = higher(met, found);
 }
 
 // Four grid points in the lattice of an azimuth.

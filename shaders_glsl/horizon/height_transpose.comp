@@ -2,7 +2,7 @@
 // per texel.
 // Reads: heights (one texel per grid point).
 // Writes: lane_heights at [march position][lane / 4]; lanes past the last repeat it, or wrap where the field repeats.
-// And the same heights to lane_buffer.
+// And the same heights to lane_buffer, after four floats that repeat the first four and before four that repeat the last.
 // One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -41,6 +41,15 @@ void main() {
     }
     imageStore(lane_heights, ivec2(group, march), four);
     if (WRITES_BUFFER) {
-        lane_buffer[march * ((lanes + 3) >> 2) + group] = four;
+        int groups = (lanes + 3) >> 2;
+        int at = march * groups + group;
+        lane_buffer[at + 1] = four;
+        // Finite heights for reads past the first and the last lane, which have no weight.
+        if (at == 0) {
+            lane_buffer[0] = four;
+        }
+        if (at == steps * groups - 1) {
+            lane_buffer[at + 2] = four;
+        }
     }
 }

@@ -80,8 +80,8 @@ Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int step
         if (READS_LANE_BUFFER && BORDER != BORDER_PERIODIC) {
             // On the last lane the height after it has no weight.
             int row = (lanes + 3) & ~3;
-            int at = clamp(m * row + cell, 0, steps * row - 1);
-            two = vec2(lane_buffer[at], lane_buffer[min(at + 1, steps * row - 1)]);
+            int at = LANE_BUFFER_PAD + clamp(m * row + cell, 0, steps * row - 1);
+            two = vec2(lane_buffer[at], lane_buffer[at + 1]);
         } else
 #endif
         if (BORDER == BORDER_PERIODIC) {

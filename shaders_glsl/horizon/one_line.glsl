@@ -148,10 +148,10 @@ void sweep_one_line() {
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int first_row = flips_march ? steps - 1 : 0;
     int first_lane = flips_lanes ? lanes - 1 : 0;
-    origin = first_row * row + first_lane;
+    origin = LANE_BUFFER_PAD + first_row * row + first_lane;
     step_stride = flips_march ? -row : row;
     lane_stride = flips_lanes ? -1 : 1;
-    last_texel = steps * row - 1;
+    last_texel = LANE_BUFFER_PAD + steps * row - 1;
     int own = int(gl_LocalInvocationID.x);
     int line = first_line + own;
     // Of the flush: the invocation's step of four, and the words of four lines at it.

@@ -16,7 +16,7 @@ float height_at(int lane, int march) {
 vec2 two_heights_at(int lane, int next, int march, int lanes) {
 #ifdef LANE_BUFFER
     if (READS_LANE_BUFFER) {
-        int row = march * ((lanes + 3) & ~3);
+        int row = LANE_BUFFER_PAD + march * ((lanes + 3) & ~3);
         return vec2(lane_buffer[row + lane], lane_buffer[row + next]);
     }
 #endif

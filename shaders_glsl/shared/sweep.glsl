@@ -1,5 +1,8 @@
 #include "shared/conventions.glsl"
 
+// Floats of `lane_buffer` before the first height and after the last: sweeping.rs has the same number.
+const int LANE_BUFFER_PAD = 4;
+
 // Position along the march axis at a step, and the step at a position: the same flip.
 int march_position(Azimuth azimuth, int step, int steps) {
     int flipped = steps - 1 - step;

@@ -24,6 +24,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     };
     if !args.quiet {
         renamed.warn();
+        note_elsewhere(args);
     }
     if args.horizons {
         pairs::check_horizons(&args.result, &a)?;
@@ -120,6 +121,24 @@ fn georeference(args: &CompareArgs) -> Result<Option<Georeference>> {
         }
     }
     Ok(None)
+}
+
+/// A note where both files have a position, and not the same.
+fn note_elsewhere(args: &CompareArgs) {
+    let position = |path: &Path| {
+        let is_geotiff = setup::is_geotiff(path);
+        is_geotiff.then(|| files::read_georeference(path).ok().flatten()).flatten()
+    };
+    let (Some(a), Some(b)) = (position(&args.result), position(&args.reference)) else { return };
+    let is_near = |a: f64, b: f64, cell: f64| (a - b).abs() <= 1e-3 * cell;
+    let is_same = (0..2).all(|i| {
+        is_near(a.corner[i], b.corner[i], b.cell[i]) && is_near(a.cell[i], b.cell[i], b.cell[i])
+    });
+    if !is_same || !a.keys.is_same_crs(&b.keys) {
+        setup::note(
+            "the files have different positions or coordinate reference systems; pixels are compared by row and column",
+        );
+    }
 }
 
 /// A ꟻLIP map per layer, by the layer's name.

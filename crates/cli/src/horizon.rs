@@ -16,6 +16,7 @@ use indicatif::HumanDuration;
 
 use crate::args::HorizonArgs;
 use crate::idle;
+use crate::render::world;
 use crate::setup::{self, Outcome};
 pub use compass::Compass;
 pub use fourier::Fourier;
@@ -340,6 +341,10 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     for (file, values) in [(angles_file, of_angles), (distances_file, of_distances)] {
         let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
         file.map_or(Ok(()), |file| file.finish(&about))?;
+    }
+    if setup::extension(&args.output) == "png" {
+        let (at, quiet) = (georeference.as_ref(), args.global.quiet);
+        world::write(&args.output, &args.input, at, quiet)?;
     }
     if let Some(json) = &args.global.json {
         if has_layers {

@@ -108,7 +108,9 @@ fn reported(
     warnings.iter().for_each(|text| warning(&format!("{name}: {}", flags_in(text))));
     if !global.quiet {
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
-        if let Some([west, south, east, north]) = surface.bbox {
+        let at = georeference.as_ref().filter(|_| surface.bbox.is_some());
+        if let Some([west, south, east, north]) = at.map(|at| at.extent(field.rows(), field.cols()))
+        {
             note(&format!(
                 "{name}: read without the ground outside --bbox, {effect} and cut the result: \
                 `gdal_translate -projwin {west} {north} {east} {south} wide.tif out.tif`"
@@ -198,6 +200,17 @@ pub fn scene(
         let suns = if set == 1 { "sun is" } else { "suns are" };
         note(&format!(
             "night: {set} {suns} below the horizontal; a scene without other lights gets a faint sky"
+        ));
+    }
+    let mut far = lights.others.0.sphere_lights.iter().filter(|sphere| {
+        let [east, north, _] = sphere.position_m;
+        !crate::render::camera::is_near(&field, [east, north])
+    });
+    if let Some(sphere) = far.next_back() {
+        let [east, north, _] = sphere.position_m;
+        warning(&format!(
+            "a sphere light at {east},{north} is farther from the field than the field is wide: both count in metres from its south-west \
+             corner"
         ));
     }
     let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint));

@@ -10,6 +10,21 @@ const PROJECTED_CRS: u16 = 3072;
 const HORIZONTAL_KEYS: [std::ops::RangeInclusive<u16>; 2] = [2048..=3071, 3072..=4095];
 const CITATIONS: [u16; 2] = [2049, 3073];
 
+/// Pseudo-Mercator on a sphere of the Earth's equatorial radius.
+const WEB_MERCATOR: [u16; 2] = [3857, 3785];
+
+/// Whether a name, or the WKT of a system, is that of Web Mercator.
+pub(crate) fn is_named_web_mercator(text: &str) -> bool {
+    let names = [
+        "Pseudo-Mercator",
+        "Pseudo_Mercator",
+        "Web_Mercator",
+        "Web Mercator",
+        "Mercator_Auxiliary_Sphere",
+    ];
+    names.iter().any(|name| text.contains(name))
+}
+
 /// The position of a north-up grid, in the coordinates of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Georeference {
@@ -74,6 +89,15 @@ impl GeoKeys {
     fn defined_by_code(&self) -> Option<u16> {
         let is_own = self.entries.iter().any(|e| e[0] == PROJECTED_CRS && e[3] == 32767);
         self.epsg().filter(|_| !is_own)
+    }
+
+    /// Whether the system is Web Mercator: its codes (EPSG:3857, and 3785 before), or a system of one's own with its name or its
+    /// projection's, as GDAL and ESRI write it.
+    pub fn is_web_mercator(&self) -> bool {
+        match self.defined_by_code() {
+            Some(code) => WEB_MERCATOR.contains(&code),
+            None => is_named_web_mercator(&self.ascii),
+        }
     }
 
     /// Whether both state the same horizontal reference system, or none.

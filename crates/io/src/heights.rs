@@ -311,12 +311,17 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
     let mut notes = std::mem::take(&mut raster.notes);
     let mut warnings = std::mem::take(&mut raster.warnings);
     warnings.extend(raster.nodata_warnings(options.nodata));
+    let size = [raster.rows, raster.cols];
     let cell_m = match options.cell_m {
         Some(cell) => cell,
         None => {
             notes.extend(raster.cell_notes());
-            warnings.extend(raster.cell_warning());
-            raster.cell.metres(path)?
+            warnings.extend(raster.cell_warnings());
+            let cell_m = raster.cell.metres(path)?;
+            let at =
+                raster.georeference.as_ref().filter(|_| matches!(raster.cell, Cell::Metres(_)));
+            warnings.extend(at.and_then(|at| projection::scale_warning(at, size, cell_m)));
+            cell_m
         }
     };
     let stored = raster.stored();
@@ -324,7 +329,10 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
     notes.extend(georeference.as_ref().and_then(|at| projection::north_note(at, rows, cols)));
     let field = HeightField::new(rows, cols, &values, cell_m, voids);
     let field = field.map_err(|error| match error {
-        Error::Setting { name, found, expected } => Error::file(path, name, found, expected),
+        Error::Setting { name, found, expected } => {
+            let hint = if found == "NaN" { "; `nodata` nan makes voids of NaN" } else { "" };
+            Error::file(path, name, found, expected + hint)
+        }
         other => other,
     })?;
     let [more_notes, more_warnings] = about(&field);

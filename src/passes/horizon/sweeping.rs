@@ -36,6 +36,9 @@ pub(crate) struct Sweeping {
     shadows: Vec<u32>,
 }
 
+/// Floats of a buffer of heights by lanes before the first height and after the last: LANE_BUFFER_PAD of sweep.glsl.
+const LANE_BUFFER_PAD: u32 = 4;
+
 /// Output of sweeps.
 #[derive(Clone, Copy)]
 struct Lattice {
@@ -218,7 +221,8 @@ pub(crate) fn prepare(
         let along = |a: &Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
         let is_read = lists.iter().enumerate().any(|(l, list)| reads(l) && list.iter().any(along));
         axis.filter(|_| is_read).map(|axis| {
-            let bytes = 4 * u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
+            let texels = u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
+            let bytes = 4 * (texels + 2 * u64::from(LANE_BUFFER_PAD));
             builder.buffer(&format!("lane_buffer_{}", axis.name()), bytes, false)
         })
     });

@@ -103,15 +103,22 @@ impl<'a> Pairs<'a> {
             return Err(unlike(args, "size", size(a), size(b)));
         }
         // Without names, an additional plane would shift all others.
-        let numbered = [&args.result, &args.reference].iter().any(|path| extension(path) == "npy");
-        if args.horizons || numbered {
+        let numbered = [&args.result, &args.reference].map(|path| extension(path) == "npy");
+        let is_numbered = numbered.contains(&true);
+        if args.horizons || is_numbered {
             let count = |p: &Planes| p.names.len().to_string();
             if a.names.len() != b.names.len() {
                 return Err(unlike(args, "number of channels", count(a), count(b)));
             }
-            if let Some((a, b)) = a.names.iter().zip(&b.names).find(|(a, b)| a != b) {
-                return Err(unlike(args, "channels", a.clone(), b.clone()));
-            }
+        }
+        // One map each: `hillshade` here is `band1` of another program. And the planes of an .npy have numbers.
+        if a.names.len() == 1 && b.names.len() == 1 || is_numbered {
+            return Self::in_order(a, b, numbered[0]).checked(args);
+        }
+        if args.horizons
+            && let Some((a, b)) = a.names.iter().zip(&b.names).find(|(a, b)| a != b)
+        {
+            return Err(unlike(args, "channels", a.clone(), b.clone()));
         }
         let place = |p: &Planes, name: &str| p.names.iter().position(|n| n == name);
         let only = |p: &'a Planes, other: &Planes| -> Vec<&'a str> {
@@ -134,20 +141,34 @@ impl<'a> Pairs<'a> {
         let is_own = |name: &str| name.split('.').next() == Some("standard_error");
         let lost =
             only_b.iter().copied().filter(|name| !is_opaque(name) && !is_own(name)).collect();
-        let pairs = Self { rows, cols, channels, only_a, only_b, lost };
+        Self { rows, cols, channels, only_a, only_b, lost }.checked(args)
+    }
+
+    /// # Errors
+    /// Flags of pictures without a picture.
+    fn checked(self, args: &CompareArgs) -> Result<Self> {
         let of_pictures = [
             ("--max-flip", args.bounds.max_flip.is_some()),
             ("--pixels-per-degree", args.pixels_per_degree.is_some()),
             ("--exposure", args.exposure != 1.0),
         ];
         if let Some((flag, _)) = of_pictures.iter().find(|(_, given)| *given)
-            && pairs.pictures().is_empty()
+            && self.pictures().is_empty()
         {
-            let names: Vec<_> = pairs.channels.iter().map(|pair| pair.name).collect();
+            let names: Vec<_> = self.channels.iter().map(|pair| pair.name).collect();
             let found = format!("only {} in both files", names.join(" "));
             return Err(Error::setting(*flag, found, "a picture: R, G and B, or Y"));
         }
-        Ok(pairs)
+        Ok(self)
+    }
+
+    /// As many planes in both, in their order; their names are those of the reference or of the result.
+    fn in_order(a: &'a Planes, b: &'a Planes, takes_names_of_reference: bool) -> Self {
+        let names = if takes_names_of_reference { &b.names } else { &a.names };
+        let planes = a.planes.iter().zip(&b.planes);
+        let channels = names.iter().zip(planes).map(|(name, (a, b))| Pair { name, a, b });
+        let [only_a, only_b, lost] = [(); 3].map(|()| Vec::new());
+        Self { rows: a.rows, cols: a.cols, channels: channels.collect(), only_a, only_b, lost }
     }
 
     /// Layers with R, G and B, or with Y.

@@ -221,9 +221,7 @@ fn say_start(args: &InfoArgs, read: &FieldFile) -> Result<()> {
     }
     crate::say!("{command} -o picture.png");
     if cell.is_none() && !read.stored.has_cell_size {
-        crate::say!(
-            "where X,Y is the grid spacing in the unit of the heights, west to east and south to north."
-        );
+        crate::say!("where X,Y is the grid spacing in metres, west to east and south to north.");
     }
     Ok(())
 }

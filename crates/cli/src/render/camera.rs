@@ -73,6 +73,15 @@ pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<O
     Ok(Some(CameraView { camera, options }))
 }
 
+/// Whether a place, metres east and north of the south-west corner, lies on the field or at most its own size beside it.
+pub fn is_near(field: &HeightField, place_m: [f64; 2]) -> bool {
+    let [width, height] =
+        [field.cell_m()[0] * field.cols() as f64, field.cell_m()[1] * field.rows() as f64];
+    // Not numbers are refused elsewhere.
+    let is_beyond = |x: f64, side: f64| x < -side || x > 2.0 * side;
+    !is_beyond(place_m[0], width) && !is_beyond(place_m[1], height)
+}
+
 /// Where the requested camera views specular from, without its picture.
 pub fn eye_m(args: &EyeArgs, field: &HeightField) -> Result<Option<[f64; 3]>> {
     let Some(at) = args.camera else { return Ok(None) };
@@ -111,6 +120,12 @@ fn placed(
     } else {
         Lens::Perspective { fov_rad: args.fov.to_radians() }
     };
+    if let Some(p) = args.look_at.filter(|p| !is_near(field, [p.east_m, p.north_m])) {
+        crate::setup::warning(&format!(
+            "--look-at {},{} is outside the field: both count in metres from its south-west corner",
+            p.east_m, p.north_m
+        ));
+    }
     let target = args.look_at.map(|p| {
         let height = p.height_m.unwrap_or_else(|| nearest_m(field, [p.east_m, p.north_m]));
         [p.east_m, p.north_m, height]

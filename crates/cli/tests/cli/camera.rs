@@ -106,6 +106,24 @@ fn gpu_cameras_write_pictures_and_depth() {
 }
 
 /// Without numbers the camera is that of 180,30, named south, and the picture has 2048 x 1152 pixels.
+/// A place far from the field is likely one in the coordinates of its file: metres count from its corner.
+#[test]
+fn gpu_places_far_from_the_field_get_a_warning() {
+    let folder = Folder::new();
+    write_field(&folder, 5, |row, col| (row * col) as f32);
+    let small = "--azimuths 4 --size 16x9 --samples 1 -o c.png";
+    for (words, warns) in [
+        ("--camera 180,20 --look-at 300000,4910000", true),
+        ("--camera 180,20 --look-at 2,7", false),
+        ("--camera south --sphere-light 300000,2,1,1,5", true),
+        ("--camera south --sphere-light -2,2,100,1,5", false),
+    ] {
+        let run = folder.run_str(&format!("render field.npy {words} {small} -q"));
+        assert_eq!(run.status, Some(0), "{words}: {}", run.err);
+        assert_eq!(run.err.contains("from its south-west corner"), warns, "{words}: {}", run.err);
+    }
+}
+
 #[test]
 fn gpu_a_camera_without_numbers_stands_in_the_south() {
     let folder = Folder::new();

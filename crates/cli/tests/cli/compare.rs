@@ -4,7 +4,7 @@ mod refused;
 
 use crate::formats::{self, colour, hdr, npy, png};
 use crate::{Folder, Run};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const NAN: f32 = f32::NAN;
 
@@ -234,7 +234,7 @@ fn layers_are_compared_by_name() {
     // 1 against 2: half of the mean, in three of six channels.
     let json = figures(&folder, "a1.exr b1.exr --max-rmse 0.25");
     assert_eq!(json["only_in_a"].as_array().unwrap().len(), 4);
-    assert_eq!(json["only_in_b"], serde_json::json!(["E.B", "E.G", "E.R"]));
+    assert_eq!(json["only_in_b"], json!(["E.B", "E.G", "E.R"]));
     let names: Vec<_> = json["rows"].as_array().unwrap().iter().map(|r| &r["channel"]).collect();
     assert_eq!(names, ["B", "G", "R", "direct.sun1.B", "direct.sun1.G", "direct.sun1.R"]);
     let excesses = json["excesses"].as_array().unwrap();
@@ -323,6 +323,29 @@ fn voids_are_masked_and_counted() {
 
 /// 4 azimuths of 4 × 3: 48 horizons, off by 0 but for 1° at azimuth 2, row 1, column 3 and -0.5° at
 /// azimuth 0's first. Median 0; rank 0.999 · 47 = 46.953 stands between 0.5° and 1°.
+/// The one map of each file, whatever its name: other programs name it otherwise. Of several maps the names count.
+#[test]
+fn single_maps_are_compared_whatever_their_names() {
+    let folder = Folder::new();
+    let (level, off) = ([0.25_f32; 12], [0.75_f32; 12]);
+    write(&folder, "a.exr", &[("hillshade", level)]);
+    write(&folder, "b.exr", &[("band1", off)]);
+    let json = figures(&folder, "a.exr b.exr");
+    assert_eq!(
+        [&json["rows"][0]["channel"], &json["only_in_b"]],
+        [&json!("hillshade"), &json!([])]
+    );
+    assert_eq!(json["rows"][0]["rmse"], json!(0.5));
+    write(&folder, "c.exr", &[("band1", level), ("band2", off)]);
+    let run = folder.run_str("compare a.exr c.exr");
+    assert_eq!(run.status, Some(1), "{}", run.out);
+    assert!(
+        run.err.contains("found hillshade, expected at least one of band1 band2"),
+        "{}",
+        run.err
+    );
+}
+
 #[test]
 fn horizons_are_compared_in_degrees() {
     let folder = Folder::new();
@@ -343,7 +366,7 @@ fn horizons_are_compared_in_degrees() {
     close("median_deg", 0.0);
     close("p999_deg", 0.5 + 0.953 * 0.5);
     close("worst_deg", 1.0);
-    assert_eq!(row["worst_at"], serde_json::json!([2, 1, 3]));
+    assert_eq!(row["worst_at"], json!([2, 1, 3]));
     for (flag, found, place) in
         [("--max-p999-deg", 0.9765, ""), ("--max-worst-deg", 1.0, "azimuth 2, row 1, column 3")]
     {

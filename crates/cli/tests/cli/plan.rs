@@ -176,7 +176,7 @@ fn info_states_what_a_file_holds() {
         "heights    7.000 to 7.000 m",
         "voids      4.167 %",
         "m, from degrees at latitude 0.00",
-        "note       no reference system: read as degrees, as its numbers fit; otherwise use --cell",
+        "warning    no reference system: read as degrees, as its numbers fit; otherwise use --cell",
         "note       4.167 % of the grid points are voids",
         "Start with: ridgelight render level.asc -o picture.png",
     ] {

@@ -26,9 +26,6 @@ const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNIT: u16 = 4099;
 const PROJECTED_CRS: u16 = 3072;
 
-/// Pseudo-Mercator on a sphere of the Earth's equatorial radius (EPSG:3857, and 3785 before).
-const WEB_MERCATOR: [u16; 2] = [3857, 3785];
-
 /// Values of the tags.
 pub(crate) struct Geo {
     pub cell: Cell,
@@ -108,7 +105,8 @@ pub(crate) fn read(
                 return Err(Error::file(path, place, format!("unit {unit}"), "9102 (degree)"));
             }
         },
-        Some(1) if keys.short(PROJECTED_CRS).is_some_and(|crs| WEB_MERCATOR.contains(&crs)) => {
+        // GDAL writes 32767 for a model of one's own.
+        Some(1 | 32767) if keys.copied(path, tiff).is_web_mercator() => {
             let Some([_, north]) = grid.origin else {
                 let expected = "the northing of a grid in Web Mercator";
                 return Err(wrong(path, TIEPOINT, "nothing", expected));
@@ -209,6 +207,10 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
             let expected = "columns to the east and rows to the south (warp it first)";
             return Err(wrong(path, TRANSFORMATION, "a rotated or sheared grid", expected));
         }
+        if yj > 0.0 {
+            let expected = "rows from north to south (warp it first, with gdalwarp)";
+            return Err(wrong(path, TRANSFORMATION, "rows from south to north", expected));
+        }
         (TRANSFORMATION, [xi, -yj], Some([x0, y0]))
     } else if let Some(scale) = doubles(path, tiff, PIXEL_SCALE)? {
         let &[x, y, ..] = scale.as_slice() else {
@@ -229,7 +231,8 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
     };
     if !cell.iter().all(|c| c.is_finite() && *c > 0.0) {
         let found = format!("cells of {:?} × {:?}", cell[0], cell[1]);
-        return Err(wrong(path, tag, found, "positive sizes, north up"));
+        let expected = "positive sizes: columns to the east and rows from north to south (warp it first, with gdalwarp)";
+        return Err(wrong(path, tag, found, expected));
     }
     Ok(Some(Grid { cell, origin }))
 }

@@ -35,21 +35,60 @@ pub(super) fn unit_m(code: u16) -> Option<f64> {
     Some(projected.to_meter()).filter(|unit| unit.is_finite() && *unit > 0.0)
 }
 
-/// The angle from true north to grid north, clockwise, at a position in the units of the system.
-fn convergence_deg(code: u16, [x, y]: [f64; 2]) -> Option<f64> {
+/// East and north, in metres on the ground, along the columns and along the rows of a grid: of lines of 2 [`HALF_LINE_M`] about a
+/// position in the units of the system.
+fn lines_m(code: u16, [x, y]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [projected, geographic] = systems(code)?;
     let half = HALF_LINE_M / projected.to_meter();
-    let at = |y: f64| {
+    let at = |x: f64, y: f64| {
         let mut point = (x, y, 0.0);
         transform(&projected, &geographic, &mut point).ok()?;
         Some([point.0.to_degrees(), point.1.to_degrees()])
     };
-    let ([west, south], [east, north]) = (at(y - half)?, at(y + half)?);
-    let [a_longitude, a_latitude] = metres_a_degree((south + north) / 2.0);
-    // Across the 180th meridian, longitudes change sign.
-    let right = ((east - west + 540.0).rem_euclid(360.0) - 180.0) * a_longitude;
-    let angle = right.atan2((north - south) * a_latitude).to_degrees();
-    angle.is_finite().then_some(angle)
+    let line = |dx: f64, dy: f64| {
+        let ([west, south], [east, north]) = (at(x - dx, y - dy)?, at(x + dx, y + dy)?);
+        let [a_longitude, a_latitude] = metres_a_degree((south + north) / 2.0);
+        // Across the 180th meridian, longitudes change sign.
+        let right = ((east - west + 540.0).rem_euclid(360.0) - 180.0) * a_longitude;
+        let line = [right, (north - south) * a_latitude];
+        line.iter().all(|x| x.is_finite()).then_some(line)
+    };
+    Some([line(half, 0.0)?, line(0.0, half)?])
+}
+
+/// The angle from true north to grid north, clockwise, at a position in the units of the system.
+fn convergence_deg(code: u16, at: [f64; 2]) -> Option<f64> {
+    let [_, [right, up]] = lines_m(code, at)?;
+    Some(right.atan2(up).to_degrees())
+}
+
+/// A cell whose size on the ground differs by less gets no warning.
+const SCALE_NOTED: f64 = 0.02;
+
+/// Where a metre of the projection is no metre on the ground, in the middle of a field whose cells have this size in metres of the
+/// projection.
+pub(super) fn scale_warning(
+    at: &Georeference,
+    [rows, cols]: [usize; 2],
+    cell_m: [f64; 2],
+) -> Option<String> {
+    let [west, south, east, north] = at.extent(rows, cols);
+    let code = projected_code(&at.keys)?;
+    let lines = lines_m(code, [(west + east) / 2.0, (south + north) / 2.0])?;
+    let [across, along] = lines.map(|[x, y]| x.hypot(y) / (2.0 * HALF_LINE_M));
+    let differs = [across, along].iter().any(|scale| (scale - 1.0).abs() > SCALE_NOTED);
+    differs.then(|| {
+        format!(
+            "metres of EPSG:{code} are not metres on the ground: cells are read as {:.2} x {:.2} m, and are {:.2} x {:.2} m at the \
+             centre. `cell_m` {:.4},{:.4} corrects it",
+            cell_m[0],
+            cell_m[1],
+            cell_m[0] * across,
+            cell_m[1] * along,
+            cell_m[0] * across,
+            cell_m[1] * along
+        )
+    })
 }
 
 /// Where grid north is not true north, in the middle of a field.

@@ -107,6 +107,8 @@ impl Raster {
                 value == nodata
                     || value.is_nan() && nodata.is_nan()
                     || single && nodata.is_finite() && value as f32 == nodata as f32
+                    // The largest floats, written with few digits. No height is so large.
+                    || nodata.abs() > 1e30 && (value / nodata - 1.0).abs() < 1e-5
             };
             let marks = self.voids.get_or_insert_with(|| vec![false; self.values.len()]);
             for (mark, value) in marks.iter_mut().zip(&self.values) {
@@ -116,10 +118,13 @@ impl Raster {
             let count = |own| self.values.iter().filter(|value| is_lost(**value, own)).count();
             let lost = own.map(|own| (own, count(own)));
             self.replaced.extend(lost.filter(|(_, count)| *count > 0));
-        } else if let Some((mark, count)) = self.likely_voids() {
+        }
+        if options.nodata.is_none()
+            && let Some((mark, count)) = self.likely_voids()
+        {
             let of = if count == 1 { "1 height is" } else { &format!("{count} heights are") };
             self.warnings.push(format!(
-                "{of} {mark}, which often marks a void, and the file names no such value; `nodata` {mark} makes voids of them"
+                "{of} {mark}, which often marks a void, and the file does not name it so; `nodata` {mark} makes voids of them"
             ));
         }
         let unit_m = self.unit_m.unwrap_or(1.0);
@@ -162,11 +167,11 @@ impl Raster {
     /// The lowest value and how often it occurs, where it is one of the usual marks of voids.
     fn likely_voids(&self) -> Option<(f64, usize)> {
         const MARKS: [f64; 3] = [-9999.0, -32768.0, -99999.0];
-        if self.voids.is_some() {
-            return None;
-        }
-        let lowest = self.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let count = || self.values.iter().filter(|v| **v == lowest).count();
+        let is_void = |i: usize| self.voids.as_ref().is_some_and(|voids| voids[i]);
+        let heights =
+            || self.values.iter().enumerate().filter(|(i, _)| !is_void(*i)).map(|(_, v)| *v);
+        let lowest = heights().fold(f64::INFINITY, f64::min);
+        let count = || heights().filter(|v| *v == lowest).count();
         MARKS.contains(&lowest).then(|| (lowest, count()))
     }
 
@@ -178,9 +183,9 @@ impl Raster {
         }
         let Some((latitude, cell)) = self.cell.degrees() else { return notes };
         let [east, north] = metres_a_degree(latitude);
-        let (of, is_guess) = match self.cell {
-            Cell::Mercator { .. } => ("Web Mercator metres", false),
-            Cell::Degrees { is_guess, .. } => ("degrees", is_guess),
+        let of = match self.cell {
+            Cell::Mercator { .. } => "Web Mercator metres",
+            Cell::Degrees { .. } => "degrees",
             Cell::Unknown | Cell::Metres(_) => return notes,
         };
         notes.push(format!(
@@ -188,18 +193,31 @@ impl Raster {
             cell[0] * east,
             cell[1] * north
         ));
-        if is_guess {
-            let text =
-                "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`";
-            notes.push(text.to_owned());
-        }
         notes
     }
 
-    /// What is assumed of cells of unknown size.
-    pub fn cell_warning(&self) -> Option<String> {
-        let text = "the file has no cell size: `cell_m` 1 is assumed";
-        (!self.stored().has_cell_size).then(|| text.to_owned())
+    /// What is assumed of cells of unknown size or unit, and how much one size for all rows is wrong.
+    pub fn cell_warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        match self.cell {
+            Cell::Unknown => {
+                warnings.push("the file has no cell size: `cell_m` 1 is assumed".to_owned());
+            }
+            Cell::Degrees { is_guess: true, .. } => warnings.push(
+                "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`"
+                    .to_owned(),
+            ),
+            _ => {}
+        }
+        let error = self.cell.width_error(self.rows);
+        if let Some(error) = error.filter(|error| *error > WIDTH_NOTED) {
+            warnings.push(format!(
+                "cells have the width of the centre in all rows: in the first or the last row it is wrong by {:.0} %. `gdalwarp -t_srs` \
+                 to a projection with metres avoids this",
+                100.0 * error
+            ));
+        }
+        warnings
     }
 }
 
@@ -216,6 +234,9 @@ pub(crate) enum Cell {
     /// Columns and rows in the metres of Web Mercator, on a field whose centre has this northing.
     Mercator { cell: [f64; 2], northing_m: f64 },
 }
+
+/// An error of the width of cells up to which there is no warning.
+const WIDTH_NOTED: f64 = 0.02;
 
 /// The radius of Web Mercator's sphere.
 const EQUATOR_M: f64 = 6_378_137.0;
@@ -247,6 +268,23 @@ impl Cell {
         }
     }
 
+    /// By how much the width of cells in the first or the last of so many rows differs from that in the middle, over the latter.
+    fn width_error(self, rows: usize) -> Option<f64> {
+        let half = rows as f64 / 2.0;
+        let (middle, _) = self.degrees()?;
+        let ends = [-half, half].map(|step| match self {
+            Self::Degrees { cell, latitude, .. } => Some(latitude + step * cell[1]),
+            Self::Mercator { cell, northing_m } => {
+                let moved = Self::Mercator { cell, northing_m: northing_m + step * cell[1] };
+                moved.degrees().map(|(latitude, _)| latitude)
+            }
+            Self::Unknown | Self::Metres(_) => None,
+        });
+        let width = |latitude: f64| metres_a_degree(latitude.clamp(-90.0, 90.0))[0];
+        let error = |latitude: &f64| (width(*latitude) / width(middle) - 1.0).abs();
+        ends.iter().flatten().map(error).reduce(f64::max)
+    }
+
     /// Metres, 1 where unknown.
     pub fn metres(self, path: &Path) -> Result<[f64; 2]> {
         match (self, self.degrees()) {
@@ -276,18 +314,94 @@ pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
     [east, north]
 }
 
-/// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360,
-/// ±90) *and* the cell is below 0.1. A projected grid with so small a cell at the origin of its
-/// projection would be mistaken for degrees; the caller can override the cell size.
+/// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360, ±90) *and* either the cell is
+/// below 0.1, or the grid goes round the Earth. A projected grid with so small a cell at the origin of its projection would be
+/// mistaken for degrees; the caller can override the cell size.
 pub(crate) fn looks_like_degrees(x: [f64; 2], y: [f64; 2], cell: [f64; 2]) -> bool {
-    x.iter().all(|x| x.abs() <= 360.0)
-        && y.iter().all(|y| y.abs() <= 90.0)
-        && cell.iter().all(|c| *c > 0.0 && *c < 0.1)
+    // Grids of centres reach half a cell beyond.
+    let is_round = (x[1] - x[0]).abs() >= 350.0 && (y[1] - y[0]).abs() >= 100.0;
+    let is_fine = cell.iter().all(|c| *c > 0.0 && *c < 0.1);
+    let beyond = if is_round { 0.5 * cell[1].abs() } else { 0.0 };
+    x.iter().all(|x| x.abs() <= 360.0 + beyond)
+        && y.iter().all(|y| y.abs() <= 90.0 + beyond)
+        && (is_fine || is_round)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Fine cells, or a grid round the Earth, also of centres; neither a coarse part of it nor a grid beyond the poles.
+    #[test]
+    fn degrees_are_guessed_from_numbers() {
+        for (x, y, cell, is_guessed) in [
+            ([7.0, 8.0], [46.0, 47.0], [0.01; 2], true),
+            ([7.0, 8.0], [46.0, 47.0], [0.1; 2], false),
+            ([-180.0, 180.0], [-90.0, 90.0], [10.0; 2], true),
+            ([-0.5, 359.5], [-90.5, 90.5], [1.0; 2], true),
+            ([0.0, 300.0], [0.0, 80.0], [1.0; 2], false),
+            ([0.0, 360.0], [0.0, 120.0], [1.0; 2], false),
+            ([500_000.0, 500_360.0], [-90.0, 90.0], [1.0; 2], false),
+        ] {
+            assert_eq!(looks_like_degrees(x, y, cell), is_guessed, "{x:?} {y:?} {cell:?}");
+        }
+    }
+
+    /// From 59.5 to 60.5 degrees: cos 59.5° / cos 60° is 1.015. From 57.5 to 62.5: 1.075. Of Web Mercator the same.
+    #[test]
+    fn one_width_for_all_rows_has_its_error() {
+        let of = |cell, rows| Raster { cell, ..Raster::bare(rows, 2, vec![0.0; 2 * rows]) };
+        let northing = |latitude: f64| EQUATOR_M * latitude.to_radians().tan().asinh();
+        for (half_deg, rows) in [(0.5, 100), (2.5, 100)] {
+            let degrees = Cell::Degrees {
+                cell: [0.01, 2.0 * half_deg / 100.0],
+                latitude: 60.0,
+                is_guess: false,
+            };
+            let middle = (northing(60.0 + half_deg) + northing(60.0 - half_deg)) / 2.0;
+            let cell_y = (northing(60.0 + half_deg) - northing(60.0 - half_deg)) / 100.0;
+            let mercator = Cell::Mercator { cell: [100.0, cell_y], northing_m: middle };
+            for cell in [degrees, mercator] {
+                let (centre, _) = cell.degrees().unwrap();
+                let ends = [60.0 - half_deg, 60.0 + half_deg];
+                let error =
+                    |end: f64| (end.to_radians().cos() / centre.to_radians().cos() - 1.0).abs();
+                let expected = f64::max(error(ends[0]), error(ends[1]));
+                let found = cell.width_error(rows).unwrap();
+                // The ellipsoid changes widths by less than e² of their change.
+                assert!((found / expected - 1.0).abs() < 0.01, "{cell:?}: {found} for {expected}");
+                let warns = of(cell, rows).cell_warnings().concat().contains("width of the centre");
+                assert_eq!(warns, half_deg > 1.0, "{cell:?}");
+            }
+        }
+        assert_eq!(Cell::Metres([1.0; 2]).width_error(100), None);
+    }
+
+    /// GDAL's tools write the least f32 with few digits. Values near it are no heights, so nothing else is lost.
+    #[test]
+    fn the_largest_floats_mark_voids_with_few_digits() {
+        let least = f64::from(f32::MIN);
+        let mut raster = Raster {
+            nodata: Some(-3.40282e38),
+            single: true,
+            ..Raster::bare(1, 3, vec![least, 5.0, -3.4e38])
+        };
+        raster.interpret(&HeightOptions::default());
+        assert_eq!(raster.voids, Some(vec![true, false, false]));
+    }
+
+    /// A usual mark that the file does not name gets a warning, also where it names another; not where the user names one.
+    #[test]
+    fn likely_voids_get_a_warning() {
+        let warned = |own: Option<f64>, given: Option<f64>| {
+            let mut raster =
+                Raster { nodata: own, ..Raster::bare(1, 4, vec![-9999.0, 40.0, -1.0, -9999.0]) };
+            raster.interpret(&HeightOptions { nodata: given, ..HeightOptions::default() });
+            raster.warnings.iter().any(|text| text.starts_with("2 heights are -9999"))
+        };
+        assert_eq!([warned(None, None), warned(Some(-1.0), None)], [true; 2]);
+        assert_eq!([warned(Some(-9999.0), None), warned(None, Some(-1.0))], [false; 2]);
+    }
 
     #[test]
     fn a_degree_follows_the_ellipsoid() {

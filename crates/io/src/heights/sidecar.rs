@@ -1,7 +1,7 @@
 //! Files beside a raster that state where it lies: world files, and ESRI's `.prj`.
 
 use super::{Cell, Raster, looks_like_degrees, projection, unit};
-use crate::georeference::{GeoKeys, Georeference};
+use crate::georeference::{GeoKeys, Georeference, is_named_web_mercator};
 use std::path::{Path, PathBuf};
 
 /// The files beside a raster: their names, and what they state where it is understood.
@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct Sidecar {
     world: Option<(String, Option<World>)>,
     crs: Option<(String, Option<Crs>)>,
-    /// GDAL's own file, if it states a scale or an offset.
+    /// GDAL's own file: if it states a scale or an offset, and if it states a reference system.
     scale: Option<String>,
+    srs: Option<String>,
 }
 
 /// A north-up grid.
@@ -45,13 +46,17 @@ impl Sidecar {
         Self {
             world: world.map(|(name, text)| (name, World::of(&text))),
             crs: crs.map(|(name, text)| (name, Crs::of_wkt(&text))),
+            srs: about
+                .as_ref()
+                .filter(|(_, text)| text.contains("<SRS"))
+                .map(|about| about.0.clone()),
             scale: about.filter(|(_, text)| has_scale(text)).map(|(name, _)| name),
         }
     }
 
     /// Completes a raster: what its own file states comes first.
     pub fn complete(self, raster: &mut Raster) {
-        let Self { world, crs, scale } = self;
+        let Self { world, crs, scale, srs } = self;
         let (notes, warnings) = (&mut raster.notes, &mut raster.warnings);
         if let Some(name) = scale {
             let text = format!("scale and offset in {name} are not read; `z_scale` scales heights");
@@ -81,6 +86,12 @@ impl Sidecar {
             );
             return;
         };
+        if let Some(name) = srs.filter(|_| crs.is_none() && at.keys.crs().is_none()) {
+            warnings.push(format!(
+                "the coordinate reference system in {name} is not read: cells are taken in metres, and outputs have none. \
+                 `gdalwarp -t_srs` to one with an EPSG code writes it into the file"
+            ));
+        }
         let mut used = None;
         match crs.filter(|_| at.keys == GeoKeys::default()) {
             None => {}
@@ -173,7 +184,9 @@ impl Crs {
         };
         let name = rest.split('"').nth(1)?.to_owned();
         let parts = parts(text)?;
-        let code = parts.iter().find_map(|part| code_of(part)).or_else(|| code_named(&name));
+        let is_mercator = !is_geographic && is_named_web_mercator(text);
+        let named = || if is_mercator { Some(3857) } else { code_named(&name) };
+        let code = parts.iter().find_map(|part| code_of(part)).or_else(named);
         // The unit of a projected system comes after that of its geographic system.
         let with_unit = parts.iter().rev().find(|part| part.contains("UNIT["))?;
         let unit = with_unit.rsplit("UNIT[").next()?.split(',').nth(1)?;

@@ -333,8 +333,8 @@ fn unreadable(method: u16) -> Option<&'static str> {
     }
 }
 
-/// A warning where the file has a mask of valid texels, which is not read: in a later directory, or in a file
-/// beside it, as GDAL writes them.
+/// A warning where the file has a mask of valid texels, which is not read: an alpha band; a mask in a later directory, or in a
+/// file beside it, as GDAL writes them.
 fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
     const IS_MASK: u32 = 4;
     let mut beside = path.as_os_str().to_owned();
@@ -350,12 +350,23 @@ fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
         }
         None
     };
-    let is_masked = has_mask().is_some() || Path::new(&beside).exists();
-    is_masked.then(|| {
-        "the mask of this file is not read: all its heights count. `gdalwarp -dstnodata -9999` turns masked \
+    let has_alpha = || {
+        let mut tiff = Decoder::new(Raw::new(bytes)).ok()?;
+        let kinds = tiff.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok()??;
+        // Associated and unassociated alpha.
+        kinds.iter().any(|kind| [1, 2].contains(kind)).then_some(())
+    };
+    let what = if has_alpha().is_some() {
+        "alpha band"
+    } else if has_mask().is_some() || Path::new(&beside).exists() {
+        "mask"
+    } else {
+        return None;
+    };
+    Some(format!(
+        "the {what} of this file is not read: all its heights count. `gdalwarp -dstnodata -9999` turns masked \
          heights into voids"
-            .to_owned()
-    })
+    ))
 }
 
 /// Where the values of a strip or tile belong in a plane.

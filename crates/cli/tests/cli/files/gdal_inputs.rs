@@ -308,10 +308,13 @@ fn gdal_masks_and_likely_voids_get_a_note() {
     tool(&folder, &format!("gdal_translate -q -ot Float32 {inside} -mask 1 a.asc inside.tif"));
     tool(&folder, "gdal_translate -q -ot Float32 -mask 1 a.asc beside.tif");
     assert!(folder.path("beside.tif.msk").exists());
+    tool(&folder, "gdalwarp -q -dstalpha -s_srs EPSG:32618 -t_srs EPSG:32619 plain.tif alpha.tif");
     let notes = |name: &str| folder.run_str(&format!("plan {name}")).notes;
     for (name, has_note) in [("plain.tif", false), ("inside.tif", true), ("beside.tif", true)] {
         assert_eq!(notes(name).contains("the mask of this file is not read"), has_note, "{name}");
     }
+    let said = notes("alpha.tif");
+    assert!(said.contains("warning: alpha.tif: the alpha band of this file is not read"), "{said}");
     assert!(!notes("a.asc").contains("often marks a void"));
     let said = notes("marked.asc");
     assert!(said.contains("1 height is -32768, which often marks a void"), "{said}");

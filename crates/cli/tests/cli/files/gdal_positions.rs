@@ -115,6 +115,14 @@ fn gdal_finds_outputs_of_a_mosaic_in_place() {
     assert!(horizon.notes.contains(said), "{}", horizon.notes);
     let cut = "`gdal_translate -projwin 500300 4901200 501200 4900300 wide.tif out.tif`";
     assert!(horizon.notes.contains(cut), "{}", horizon.notes);
+    // Of a box inside of the same cells, and of one beyond the field's north-east corner.
+    let inside =
+        succeeded(&folder, &format!("svf {names} --bbox 500301,4900310,501190,4901199 -o v.tif"));
+    assert!(inside.notes.contains(cut), "{}", inside.notes);
+    let beyond =
+        succeeded(&folder, &format!("svf {names} --bbox 501201,4901201,600000,5000000 -o v.tif"));
+    let cut = "`gdal_translate -projwin 501200 4901500 501800 4901200 wide.tif out.tif`";
+    assert!(beyond.notes.contains(cut), "{}", beyond.notes);
     done(&folder, &format!("bake {names} {bbox} --what sky-view --format tif -o baked"));
     done(
         &folder,
@@ -319,6 +327,110 @@ fn gdal_agrees_on_the_metres_of_web_mercator() {
             assert!((30.0 * phi.cos() - expected).abs() > 10.0 * bound || axis == 0 && y == 0.0);
         }
     }
+}
+
+/// Web Mercator without its code, as ESRI and GDAL write it, has the cells that it has with its code; also by a `.prj`.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_writes_web_mercator_without_a_code() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([4, 4], [1.5e6, 5.6e6], 30.0, 0).as_bytes());
+    let cells = |name: &str| {
+        let run = folder.run_without_driver(&["info", name, "--json", "-"]);
+        let facts: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+        facts["cell_m"].clone()
+    };
+    tool(&folder, "gdal_translate -q -a_srs EPSG:3857 a.asc a.tif");
+    let expected = cells("a.tif");
+    assert!(expected[0].as_f64().unwrap() < 25.0, "{expected}");
+    for srs in ["ESRI:102100", "EPSG:900913", "+proj=webmerc"] {
+        tool(&folder, &format!("gdal_translate -q -a_srs {srs} a.asc b.tif"));
+        assert_eq!(cells("b.tif"), expected, "{srs}");
+    }
+    for form in ["wkt_esri", "wkt1", "wkt2_2018"] {
+        let mut command = Command::new("gdalsrsinfo");
+        let output = command.args(["-o", form, "EPSG:3857"]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains("PROJ"), "{text}");
+        folder.write("a.prj", text.trim().as_bytes());
+        assert_eq!(cells("a.asc"), expected, "{form}");
+    }
+    folder.write("a.prj", b"");
+    assert_ne!(cells("a.asc"), expected);
+}
+
+/// Projected metres that are not metres on the ground get a warning with the cells that GDAL's coordinates give.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_agrees_on_the_scale_of_projections() {
+    let folder = Folder::new();
+    let (equator_m, squared): (f64, f64) = (6_378_137.0, 0.006_694_38);
+    for (code, [x, y], warns) in [
+        (3395, [-8e6, 5.5e6], true),
+        (4087, [-8e6, 4.9e6], true),
+        (6933, [-7e6, 5.1e6], true),
+        (32618, [5e5, 4.9e6], false),
+        (5070, [1.5e6, 2.3e6], false),
+    ] {
+        folder.write("a.asc", grid([4, 4], [x - 60.0, y - 60.0], 30.0, 0).as_bytes());
+        tool(&folder, &format!("gdal_translate -q -a_srs EPSG:{code} a.asc a.tif"));
+        let run = folder.run_without_driver(&["info", "a.tif"]);
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let said = run.out.lines().find(|line| line.contains("are not metres on the ground"));
+        assert_eq!(said.is_some(), warns, "{code}: {}", run.out);
+        let Some((_, hint)) = said.and_then(|said| said.split_once("--cell ")) else { continue };
+        let found: Vec<f64> =
+            hint.split([',', ' ']).take(2).map(|number| number.parse().unwrap()).collect();
+        let place = |x: f64, y: f64| degrees_of(code, "EPSG:4326", [x, y]);
+        let ends = [
+            [place(x - 500.0, y), place(x + 500.0, y)],
+            [place(x, y - 500.0), place(x, y + 500.0)],
+        ];
+        let phi = place(x, y)[1].to_radians();
+        let w = (1.0 - squared * phi.sin().powi(2)).sqrt();
+        let radii = [equator_m * phi.cos() / w, equator_m * (1.0 - squared) / w.powi(3)];
+        let mut differs = false;
+        for (found, [from, to]) in found.iter().zip(ends) {
+            let [east, north] = [0, 1].map(|k| radii[k] * (to[k] - from[k]).to_radians());
+            let expected = 30.0 * east.hypot(north) / 1000.0;
+            // Printed with four decimals. A line of 1 km bends to third order: less than 1e-6 of it.
+            let bound = 5.1e-5 + 1e-5 * expected;
+            assert!((found - expected).abs() < bound, "{code}: {found} for {expected}");
+            differs |= (expected - 30.0).abs() > 0.02 * 30.0;
+        }
+        assert!(differs, "{code}");
+        assert!(
+            !folder
+                .run_without_driver(&["info", "a.tif", "--cell", hint])
+                .out
+                .contains("on the ground")
+        );
+    }
+}
+
+/// Rows from south to north are refused with what to do; a system that only GDAL's own file states is lost with a warning.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_positions_that_are_not_read_are_named() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([4, 4], [5e5, 4.9e6], 30.0, 0).as_bytes());
+    tool(
+        &folder,
+        "gdal_translate -q -a_srs EPSG:32618 -a_ullr 500000 4900000 500120 4900120 a.asc up.tif",
+    );
+    let run = folder.run_without_driver(&["info", "up.tif"]);
+    assert_eq!(run.status, Some(1), "{}", run.out);
+    assert!(
+        run.err.contains("rows from south to north") && run.err.contains("gdalwarp"),
+        "{}",
+        run.err
+    );
+    tool(&folder, "gdal_translate -q -a_srs EPSG:8857 a.asc pam.tif");
+    let run = folder.run_without_driver(&["info", "pam.tif"]);
+    let is_lost = run.out.contains("CRS        not stated");
+    let warns = run.out.contains("the coordinate reference system in pam.tif.aux.xml is not read");
+    assert_eq!(is_lost, warns, "{}", run.out);
+    assert!(folder.path("pam.tif.aux.xml").exists() && is_lost, "{}", run.out);
 }
 
 /// Longitude and latitude by GDAL of a position in a system of the EPSG registry.

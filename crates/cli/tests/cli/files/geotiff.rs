@@ -47,6 +47,25 @@ fn gpu_maps_lie_where_the_input_lies() {
     }
 }
 
+/// Pixels of different places are compared with a note; not the same place in another cut.
+#[test]
+fn gpu_maps_of_different_places_are_compared_with_a_note() {
+    let folder = folder();
+    for (name, bbox) in [
+        ("a", "500000,5099960,500020,5100000"),
+        ("b", "500020,5099960,500040,5100000"),
+        ("c", "500001,5099961,500019,5099999"),
+    ] {
+        done(&folder, &format!("svf utm.tif --bbox {bbox} --azimuths 8 -o {name}.tif"));
+    }
+    for (pair, notes) in [("a.tif b.tif", true), ("a.tif c.tif", false)] {
+        let run = folder.run_str(&format!("compare {pair}"));
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let said = "note: the files have different positions";
+        assert_eq!(run.err.contains(said), notes, "{pair}: {}", run.err);
+    }
+}
+
 /// Heights in feet are converted, and a note names their unit.
 #[test]
 fn heights_in_feet_get_a_note() {
@@ -109,6 +128,11 @@ fn gpu_geotiffs_are_compared_by_band() {
     done(&folder, "horizon utm.tif --azimuths 8 -o h.tif");
     done(&folder, "horizon utm.tif --azimuths 8 -o h.exr");
     done(&folder, "compare h.tif h.exr --horizons --max-worst-deg 0");
+    // The planes of an .npy have numbers, those of a .tif names.
+    done(&folder, "horizon utm.tif --azimuths 8 -o h.npy");
+    for pair in ["h.tif h.npy", "h.npy h.tif"] {
+        done(&folder, &format!("compare {pair} --horizons --max-worst-deg 0"));
+    }
 }
 
 #[test]
@@ -117,6 +141,8 @@ fn gpu_a_picture_has_a_world_file() {
     done(&folder, "render utm.tif -o o.png --azimuths 8");
     let world = std::fs::read_to_string(folder.path("o.pgw")).unwrap();
     assert_eq!(world, "10\n0\n0\n-20\n500005\n5099990\n");
+    done(&folder, "horizon utm.tif -o h.png --azimuths 4");
+    assert_eq!(std::fs::read_to_string(folder.path("h.pgw")).unwrap(), world);
     // A picture without a position leaves the file alone and warns.
     let run = folder.run_str("render a.npy -o o.png --azimuths 8");
     assert_eq!(run.status, Some(0), "{}", run.err);

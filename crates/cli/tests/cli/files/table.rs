@@ -53,7 +53,7 @@ const ROWS: [Row; 7] = [
     Row {
         file: "`.npz`",
         example: "a.npz",
-        heights: "the array `elevation`, `heights`, `height`, `z`, or the only one; `dx` and `dy`",
+        heights: "the array `elevation`, `heights`, `height`, `z`, or the only one; `dx` and `dy`, in degrees where `xmin`, `xmax`, `ymin` and `ymax` fit longitudes and latitudes",
         nodata: "no",
         unit: "metres",
         compared: "values, cell size",
