@@ -147,7 +147,8 @@ fn draw(
     let device = &host.device;
     let (from, to) = (vk::ImageUsageFlags::TRANSFER_SRC, vk::ImageUsageFlags::TRANSFER_DST);
     let heights = image(host, blocks, vk::ImageUsageFlags::SAMPLED | to)?;
-    let light = image(host, blocks, vk::ImageUsageFlags::STORAGE | from)?;
+    let light =
+        image(host, blocks, vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED | from)?;
     let mut renderer = prepare(host, scene)?;
     let size = 4 * (ROWS * COLS) as u64;
     let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;

@@ -147,6 +147,18 @@ impl Memory {
         [width, height, layers]: [u32; 3],
         layered: bool,
     ) -> Result<Backed> {
+        // A plan may be for another device.
+        // SAFETY: the physical device is the instance's, which is alive.
+        let device =
+            unsafe { self.host.instance.get_physical_device_properties(self.host.physical_device) };
+        let most = [device.limits.max_image_dimension2_d, device.limits.max_image_array_layers];
+        if width.max(height) > most[0] || layers > most[1] {
+            return Err(Error::Limit {
+                what: format!("image {name}"),
+                needs: format!("{width} × {height} texels in {layers} layers"),
+                limit: format!("{0} × {0} texels in {1} layers, of this device", most[0], most[1]),
+            });
+        }
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
@@ -161,7 +173,7 @@ impl Memory {
         let range = vk::ImageSubresourceRange { layer_count: layers, ..whole_attachment(format) };
         let device = self.host.device.clone();
         // SAFETY: the device is alive, as the callers of Renderer::new and Headless guarantee; `info` is a
-        // plain 2D image within the plan's limits.
+        // plain 2D image within the device's limits.
         let image = unsafe { device.create_image(&info, None) }
             .map_err(failed(format!("making image {name}")))?;
         let mut backed = Backed { image, layers, ..Backed::default() };

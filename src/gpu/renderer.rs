@@ -109,11 +109,12 @@ const fn is_send<T: Send>() {}
 const _: () = is_send::<Renderer>();
 
 impl Renderer {
-    /// Makes everything that `plan` needs on the host's device, for `slots` frames in flight (1 or more).
+    /// Makes everything that `plan` needs on the host's device, for `slots` frames in flight (1 or more). The plan must be for this
+    /// device's [`limits`](crate::gpu::limits): only the sizes of its images are checked again.
     ///
     /// # Errors
     /// A device that lacks a requirement (named), or is out of memory; a queue family that the device does not
-    /// have, or that has no compute.
+    /// have, or that has no compute; images that are larger than the device allows.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
         Self::with_memory(host, plan, slots, Box::new(Blocks::new(host)?))
     }
@@ -277,7 +278,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`record`](Self::record). A pass that does not exist, is repeated or out of order, or follows a pass that must be
-    /// recorded first.
+    /// recorded first. An output without contents that these passes read or add to.
     pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -289,6 +290,7 @@ impl Renderer {
         let inputs: Vec<InputArg> = inputs.iter().map(|input| (*input).into()).collect();
         self.check(slot, &inputs, outputs)?;
         self.check_passes(passes)?;
+        self.check_kept(outputs, passes)?;
         let affected = self.affected(passes);
         self.append(commands, slot, &inputs, outputs, passes, None);
         let has_pending = self.progress.contains(&Progress::Pending);
@@ -314,7 +316,9 @@ impl Renderer {
         self.check(slot, &inputs, outputs)?;
         match work {
             Work::Passes([]) => Ok(()),
-            Work::Passes(passes) => self.check_passes(passes),
+            Work::Passes(passes) => {
+                self.check_passes(passes).and_then(|()| self.check_kept(outputs, passes))
+            }
             Work::Edit(edit) => self.plan.check_edit(edit).and_then(|()| self.check_drawn(outputs)),
         }
     }

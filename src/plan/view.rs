@@ -283,9 +283,12 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
         Lens::Orthographic { height_m } => {
             let back = camera.axes()[2];
             let eye = camera.eye_m();
+            // Of heights that only the device knows, the target tells most.
+            let target = scene.field.is_unknown().then(|| DVec3::from(camera.target_m));
             let (near, far) = corners(&scene.field)
-                .iter()
-                .map(|c| (eye - *c).dot(back))
+                .into_iter()
+                .chain(target)
+                .map(|c| (eye - c).dot(back))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(d), f.max(d)));
             // Gives level ground a depth range, and room for heights that change on the device.
             let margin = far - near + height_m;
@@ -328,6 +331,29 @@ mod tests {
     use crate::plan::{Picture, picture};
     use crate::scene::{HeightField, Lights, Quality, Surface};
     use std::f64::consts::FRAC_PI_2;
+
+    /// Ground about the target has a depth, whatever its height; a field of known heights has its own range.
+    #[test]
+    fn an_orthographic_view_of_unknown_heights_reaches_its_target() {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let limits = Limits::lavapipe();
+        for z in [0.0, 100.0, -1500.0] {
+            let field = HeightField::unknown(5, 5, [2.0; 2]).unwrap();
+            let scene = Scene { field, surface: Surface::default(), lights: lights.clone() };
+            let lit = picture(&scene, &Quality::default(), &limits, Picture::default()).unwrap();
+            let camera = Camera {
+                target_m: [4.0, 4.0, z],
+                azimuth_rad: 0.0,
+                elevation_rad: FRAC_PI_2,
+                distance_m: 7.0,
+                lens: Lens::Orthographic { height_m: 8.0 },
+            };
+            let view = View::new(&scene, &lit, &camera, &ViewOptions::default(), &limits).unwrap();
+            // The target is 7 m ahead; ground up to the picture's height above and below it is drawn.
+            let [near, far] = [view.distance_m(1.0), view.distance_m(1e-30)];
+            assert!(near <= 7.0 - 8.0 && far >= 7.0 + 8.0, "{z}: {near} to {far}");
+        }
+    }
 
     /// A sky with its colour on the device is not drawn in the scene's colour.
     #[test]

@@ -129,6 +129,11 @@ impl HeightField {
         Ok(Self { rows, cols, heights_m: vec![0.0; count], is_unknown: true, ..corner })
     }
 
+    /// Whether only the device knows the heights.
+    pub(crate) fn is_unknown(&self) -> bool {
+        self.is_unknown
+    }
+
     /// Refuses heights that only the device knows ([`unknown`](Self::unknown)) for `name`, which needs `expected`.
     pub(crate) fn check_known(&self, name: &str, expected: &str) -> Result<()> {
         if self.is_unknown {

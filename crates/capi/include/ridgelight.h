@@ -316,7 +316,7 @@ typedef struct RidgelightImageInfo {
     VkFormat format;
     // Columns, rows and layers.
     uint32_t extent[3];
-    // Its required usage: SAMPLED or STORAGE; 0 where a buffer is taken instead.
+    // Its required usage: SAMPLED of an input, STORAGE and SAMPLED of an output; 0 where a buffer is taken instead.
     VkImageUsageFlags usage;
     // "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8,
     // nul-terminated.
@@ -387,7 +387,7 @@ typedef struct RidgelightImage {
     // units of the range); environment, albedo and light colours RGBA32F, RGBA16F, RGBA8 UNORM or SRGB;
     // outputs have the plan's.
     VkFormat format;
-    // The image: of usage SAMPLED for an input, STORAGE for an output.
+    // The image: of usage SAMPLED for an input, STORAGE and SAMPLED for an output.
     VkImage image;
     // A view of its colour aspect, 2D.
     VkImageView view;
@@ -503,8 +503,8 @@ const char *ridgelight_last_error(void);
 uint32_t ridgelight_version(void);
 
 // Whether the library is compatible with a program compiled with a header of `version`, which is
-// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor; otherwise the library must
-// not be older.
+// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor, and the library must not be
+// older.
 //
 // Returns OK, or ARGUMENT.
 enum RidgelightResult ridgelight_check_version(uint32_t header);

@@ -82,8 +82,8 @@ pub extern "C" fn ridgelight_version() -> u32 {
 }
 
 /// Whether the library is compatible with a program compiled with a header of `version`, which is
-/// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor; otherwise the library must
-/// not be older.
+/// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor, and the library must not be
+/// older.
 ///
 /// Returns OK, or ARGUMENT.
 #[unsafe(no_mangle)]
@@ -92,7 +92,7 @@ pub extern "C" fn ridgelight_check_version(header: u32) -> RidgelightResult {
         let parts = |v: u32| [v >> 16, v >> 8 & 0xff, v & 0xff];
         let [found, own] = [header, RIDGELIGHT_VERSION].map(parts);
         let is_same = if own[0] == 0 { found[..2] == own[..2] } else { found[0] == own[0] };
-        if is_same && found[..2] <= own[..2] {
+        if is_same && found <= own {
             return Ok(());
         }
         let text = |v: [u32; 3]| format!("{}.{}.{}", v[0], v[1], v[2]);

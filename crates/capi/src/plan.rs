@@ -217,7 +217,7 @@ pub struct RidgelightImageInfo {
     pub format: vk::Format,
     /// Columns, rows and layers.
     pub extent: [u32; 3],
-    /// Its required usage: SAMPLED or STORAGE; 0 where a buffer is taken instead.
+    /// Its required usage: SAMPLED of an input, STORAGE and SAMPLED of an output; 0 where a buffer is taken instead.
     pub usage: vk::ImageUsageFlags,
     /// "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8,
     /// nul-terminated.
@@ -303,7 +303,9 @@ pub unsafe extern "C" fn ridgelight_plan_output(
     // SAFETY: as the caller says.
     done(|| unsafe {
         let image = handle(plan, "plan")?.0.outputs().nth(index as usize);
-        describe(image.map(|(_, r)| r), index, vk::ImageUsageFlags::STORAGE, info)
+        // Passes read outputs of earlier ones, such as bounces the direct light.
+        let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+        describe(image.map(|(_, r)| r), index, usage, info)
     })
 }
 

@@ -141,6 +141,9 @@ unsafe impl SizeFirst for RidgelightScene {}
 pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     // SAFETY: as the caller says, here and below.
     let scene = unsafe { read(from, "scene") }?;
+    if scene.reserved != 0 {
+        return Err(Failure::argument("scene: reserved", scene.reserved, "0"));
+    }
     let samples = scene.rows as usize * scene.cols as usize;
     let field = field([scene.rows, scene.cols], scene.cell_m, "scene")?;
     let borders = [Border::Plane, Border::Open, Border::Periodic];

@@ -168,7 +168,7 @@ pub struct RidgelightImage {
     /// units of the range); environment, albedo and light colours RGBA32F, RGBA16F, RGBA8 UNORM or SRGB;
     /// outputs have the plan's.
     pub format: vk::Format,
-    /// The image: of usage SAMPLED for an input, STORAGE for an output.
+    /// The image: of usage SAMPLED for an input, STORAGE and SAMPLED for an output.
     pub image: vk::Image,
     /// A view of its colour aspect, 2D.
     pub view: vk::ImageView,

@@ -65,12 +65,20 @@ pub fn planes(pixels: &Pixels, [rows, cols]: [usize; 2]) -> Result<Planes> {
 /// - A missing golden. The result is written beside it as `NAME.new.EXT`.
 /// - Files that cannot be read or written.
 pub fn hold(got: &Planes, golden: &Path, tolerance: f64, folder: &Path) -> Result<f64> {
+    let write = |path: &Path| {
+        // The first golden of a project.
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+        parent.map_or(Ok(()), |parent| {
+            std::fs::create_dir_all(parent).map_err(|source| Error::io(parent, source))
+        })?;
+        write(path, got)
+    };
     let is_set = |name: &str, value: &str| std::env::var_os(name).is_some_and(|v| v == value);
     if is_set("RIDGELIGHT_BLESS", "1") {
         if std::env::var_os("CI").is_some() {
             return Err(Error::setting("RIDGELIGHT_BLESS", "CI set too", "one of them"));
         }
-        write(golden, got)?;
+        write(golden)?;
     } else if !golden.exists() {
         let mut name = golden.file_stem().unwrap_or_default().to_owned();
         name.push(".new");
@@ -79,7 +87,7 @@ pub fn hold(got: &Planes, golden: &Path, tolerance: f64, folder: &Path) -> Resul
             name.push(extension);
         }
         let new = golden.with_file_name(name);
-        write(&new, got)?;
+        write(&new)?;
         let expected = format!(
             "a golden; check {} and rename it, or set RIDGELIGHT_BLESS=1 to write the golden",
             new.display()
@@ -304,14 +312,16 @@ mod tests {
     #[test]
     fn a_missing_golden_is_written_as_new() {
         let folder = tempfile::tempdir().unwrap();
-        let (golden, output) = (folder.path().join("lit.exr"), folder.path().join("output"));
+        // The folder of a project's first golden is made, too.
+        let (golden, output) =
+            (folder.path().join("goldens/lit.exr"), folder.path().join("output"));
         let got = two_by_three();
         let message = hold(&got, &golden, 1e-6, &output).unwrap_err().to_string();
         for part in ["lit.exr: golden: found no file", "lit.new.exr", "RIDGELIGHT_BLESS=1"] {
             assert!(message.contains(part), "{part} in {message}");
         }
         assert!(!golden.exists() && !output.exists());
-        std::fs::rename(folder.path().join("lit.new.exr"), &golden).unwrap();
+        std::fs::rename(golden.with_file_name("lit.new.exr"), &golden).unwrap();
         assert_eq!(hold(&got, &golden, 1e-6, &output).unwrap(), 0.0);
     }
 

@@ -86,7 +86,7 @@ fn of_vulkan(format: wgpu::TextureFormat) -> Option<vk::Format> {
 /// A texture for an input or output of a plan, with the usages that a renderer needs and those of `usages`; its texels are
 /// 0.
 ///
-/// For textures of your own: an input needs TEXTURE_BINDING, an output STORAGE_BINDING. wgpu does not see Ridgelight's
+/// For textures of your own: an input needs TEXTURE_BINDING, an output STORAGE_BINDING and TEXTURE_BINDING. wgpu does not see Ridgelight's
 /// writes. It clears a texture at its first read if none of its own commands wrote to it, and the light is lost. So write
 /// to each output once.
 ///
@@ -109,7 +109,7 @@ pub fn texture(
         ));
     };
     let bound = if resource.owner == Owner::Output {
-        wgpu::TextureUsages::STORAGE_BINDING
+        wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING
     } else {
         wgpu::TextureUsages::TEXTURE_BINDING
     };
@@ -401,7 +401,7 @@ fn image(
         return Err(Error::setting(format!("{name}: format"), found, expected));
     };
     let needed = if layout == vk::ImageLayout::GENERAL {
-        wgpu::TextureUsages::STORAGE_BINDING
+        wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING
     } else {
         wgpu::TextureUsages::TEXTURE_BINDING
     };

@@ -79,7 +79,8 @@ fn main() -> Any<()> {
     let host = host(&device, &queue)?;
     let mut renderer = ash_host::prepare(&host, &scene)?;
     let heights = image(&memory, ImageUsage::SAMPLED | ImageUsage::TRANSFER_DST)?;
-    let light = image(&memory, ImageUsage::STORAGE | ImageUsage::TRANSFER_SRC)?;
+    let light =
+        image(&memory, ImageUsage::STORAGE | ImageUsage::SAMPLED | ImageUsage::TRANSFER_SRC)?;
     let [filled_from, read_to] =
         [texels(&memory, scene.field.heights_m())?, texels(&memory, &[0.0; ROWS * COLS])?];
 

@@ -124,6 +124,25 @@ impl Renderer {
         Err(Error::setting("passes", found, expected))
     }
 
+    /// Requires contents of outputs that these passes go on with: the first pass of the plan that uses such an output is not
+    /// among them.
+    pub(super) fn check_kept(&self, outputs: &[ImageArg], passes: &[usize]) -> Result<()> {
+        for (arg, (id, resource)) in outputs.iter().zip(self.plan.outputs()) {
+            let uses = |pass: &usize| self.plan.passes[*pass].bindings.contains(&Some(id));
+            let first = (0..self.plan.passes.len()).find(uses);
+            let used = passes.iter().copied().find(uses);
+            if let (Some(first), Some(used)) = (first, used)
+                && first != used
+            {
+                let expected = format!(
+                    "a layout with the contents of pass {first}, which pass {used} reads or adds to"
+                );
+                check_layout(&resource.name, "before", arg.before.layout, &expected)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Passes that must run because of those of `passes` that are recorded again, these included: they read what those write, add to
     /// the same sum, or their inputs were overwritten. None for a whole recording.
     pub(super) fn affected(&self, passes: &[usize]) -> Vec<bool> {

@@ -38,7 +38,7 @@ impl ImageState {
 #[derive(Clone, Copy, Debug)]
 pub struct ImageArg {
     /// The image; only mip level 0 and array layers from 0 are used and change state. Inputs need usage
-    /// SAMPLED, outputs STORAGE.
+    /// SAMPLED, outputs STORAGE and SAMPLED.
     pub image: vk::Image,
     /// A view of its colour aspect: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,

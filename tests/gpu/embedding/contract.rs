@@ -2,7 +2,7 @@
 
 use ash::vk;
 use ridgelight::gpu::Renderer;
-use ridgelight::plan::{self, Picture, missing_barriers};
+use ridgelight::plan::{self, Limits, Picture, missing_barriers};
 use ridgelight::scene::{Border, Environment, Fuse, Hull, Lines, Method, Quality, Sun};
 
 use crate::{Device, field, under_sky};
@@ -44,6 +44,20 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
     let again = gpu.pixels(&frame, 0).expect("pixels").values;
     gpu.end(frame);
     assert_eq!(again, fresh);
+}
+
+/// A plan made for another device is refused before an image is made: validation would report that.
+#[test]
+fn a_plan_beyond_the_device_is_refused() {
+    let mut device = Device::new();
+    let side = 2 * device.limits().image_side as usize;
+    let scene = under_sky(field(4, side, [1.0, 1.0], |_, c| (c % 5) as f64), Border::Plane);
+    let quality = Quality { azimuths: 4, ..Quality::default() };
+    let limits = Limits::boundless(true, 8 << 30);
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+    let gpu = device.gpu.as_mut().expect("alive");
+    let error = gpu.frame(plan, &[scene.field.heights_m()]).err().expect("an error").to_string();
+    assert!(error.contains(&format!("{side} ×")) && error.contains("of this device"), "{error}");
 }
 
 /// Half of the largest heap of the device's own memory; all of it where a software driver states it.

@@ -1,6 +1,7 @@
 //! After a change only the necessary passes run: the same bits as all of them.
 
-use ridgelight::gpu::Headless;
+use ash::vk;
+use ridgelight::gpu::{Headless, ImageArg, ImageState, Work};
 use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
@@ -379,6 +380,49 @@ fn two_changes_before_a_recording_are_both_drawn() {
     assert!(bits(gpu, &frame) == nothing);
     let none: [usize; 0] = [];
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
+    gpu.end(frame);
+}
+
+/// A pass that adds to an output which other passes began needs its contents; the whole frame, and what begins with the first of
+/// them, need none.
+#[test]
+fn outputs_that_passes_go_on_with_must_have_contents() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    let resolves = |part: &str| {
+        all.iter()
+            .copied()
+            .filter(|i| plan.passes[*i].label().starts_with(part))
+            .collect::<Vec<_>>()
+    };
+    let (inputs, outputs) = (frame.inputs(), frame.outputs());
+    let empty: Vec<ImageArg> = outputs
+        .iter()
+        .map(|image| {
+            let before = ImageState { layout: vk::ImageLayout::UNDEFINED, ..image.before };
+            ImageArg { before, ..*image }
+        })
+        .collect();
+    let mut check = |outputs: &[ImageArg], passes: &[usize]| {
+        frame.renderer().check_recording(0, &inputs, outputs, Work::Passes(passes))
+    };
+    let last = resolves("light_resolve sun2");
+    check(&outputs, &last).expect("contents");
+    let error = check(&empty, &last).expect_err("no contents").to_string();
+    let expected = format!(
+        "radiance: layout before: found UNDEFINED, expected a layout with the contents of pass {}, which pass {} reads or adds to",
+        resolves("light_resolve sky")[0],
+        last[0]
+    );
+    assert_eq!(error, expected);
+    check(&empty, &resolves("light_resolve")).expect("what begins the sums");
+    check(&empty, &all).expect("a whole frame");
     gpu.end(frame);
 }
 

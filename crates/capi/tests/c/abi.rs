@@ -284,6 +284,12 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
         let mut info: RidgelightImageInfo = zeroed();
         good(ridgelight_plan_input(plan, 0, &mut info));
         assert!(info.usage.is_empty() && info.format == vk::Format::R32_SFLOAT);
+        good(ridgelight_plan_output(plan, 0, &mut info));
+        assert_eq!(info.usage, vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED);
+        let scene = RidgelightScene { reserved: 1, ..scene() };
+        let mut none = ptr::null_mut();
+        let planned = ridgelight_plan_create(&host, &scene, ptr::null(), 0, 0, &mut none);
+        refused(planned, argument, "scene: reserved: found 1");
         good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
         let output = image(&frame.outputs()[0]);
         let state = RidgelightImageState {

@@ -15,6 +15,7 @@ static void refuses(RidgelightResult found, RidgelightResult code, const char *n
 
 int main(void) {
     refuses(ridgelight_check_version(RIDGELIGHT_VERSION), RIDGELIGHT_RESULT_OK, "");
+    refuses(ridgelight_check_version(RIDGELIGHT_VERSION + 1), RIDGELIGHT_RESULT_ARGUMENT, "header: found");
     refuses(ridgelight_check_version(RIDGELIGHT_VERSION + 0x100), RIDGELIGHT_RESULT_ARGUMENT, "header: found");
     refuses(ridgelight_check_version(RIDGELIGHT_VERSION + 0x10000), RIDGELIGHT_RESULT_ARGUMENT, "header: found");
     refuses(ridgelight_requirements(NULL), RIDGELIGHT_RESULT_ARGUMENT, "requirements: found a null pointer");

@@ -57,12 +57,17 @@ impl Normals {
         }
     }
 
+    /// The name of the convention, and where y points.
+    pub fn axes(self) -> [&'static str; 2] {
+        match self {
+            Normals::Opengl => ["OpenGL, +Y", "north, to the first row"],
+            Normals::Directx => ["DirectX, -Y", "south, to the last row"],
+        }
+    }
+
     /// For the manifest.
     pub fn describe(self) -> serde_json::Value {
-        let (convention, y) = match self {
-            Normals::Opengl => ("OpenGL, +Y", "north, to the first row"),
-            Normals::Directx => ("DirectX, -Y", "south, to the last row"),
-        };
+        let [convention, y] = self.axes();
         let packed = Format::value_variants().iter().filter(|format| format.is_packed());
         let packed: Vec<&str> = packed.map(|format| format.name()).collect();
         let of = format!(

@@ -225,7 +225,7 @@ impl<'a> MapFiles<'a> {
         georeference: Option<&Georeference>,
     ) -> Result<Self> {
         let size = map.size.unwrap_or([field.cols(), field.rows()]);
-        let texts: Vec<(String, String)> = [
+        let mut texts: Vec<(String, String)> = [
             ("ridgelight.kind", wanted.kind.name),
             ("ridgelight.encoding", wanted.encoding.name),
             ("ridgelight.decoding", wanted.encoding.decoding),
@@ -233,6 +233,9 @@ impl<'a> MapFiles<'a> {
         ]
         .map(|(name, text)| (name.to_owned(), text.to_owned()))
         .into();
+        if let Some(normals) = map.normals {
+            texts.push(("ridgelight.normals".to_owned(), normals.axes()[0].to_owned()));
+        }
         let open = wanted.formats.iter().map(|format| {
             let path = folder.join(wanted.file(&map, *format, 0));
             Ok(match format {

@@ -64,6 +64,13 @@ impl MapFiles<'_> {
             });
             let name = block.vulkan().1.trim_end_matches("_BLOCK");
             all.push(format!("error of {name}: {}", each.collect::<Vec<_>>().join("; ")));
+            let [cols, rows] = self.size();
+            if self.has(Format::Dds) && [cols, rows].iter().any(|side| !side.is_multiple_of(4)) {
+                all.push(format!(
+                    "Direct3D loads a .dds of blocks only if its sides are multiples of 4, and these are {cols} x {rows}; \
+                     load the .ktx2, or cut the field with --bbox"
+                ));
+            }
         }
         let (count, most) = self.beyond;
         if count == 0 {

@@ -85,6 +85,7 @@ fn gpu_blocks_hold_the_stated_error() {
         let reader = ktx2::Reader::new(std::fs::read(path("ktx2")).unwrap()).unwrap();
         let dds = Dds::read(std::fs::File::open(path("dds")).unwrap()).unwrap();
         assert!(run.contains(&format!("note: {kind}: error of {format}: ")), "{run}");
+        assert!(run.contains("multiples of 4, and these are 22 x 13"), "{run}");
         // 22, 11, 5, 2 and 1 texels.
         let header = reader.header();
         assert_eq!([header.level_count, dds.get_num_mipmap_levels()], [5, 5]);
@@ -201,6 +202,11 @@ fn gpu_normals_have_the_axes_of_the_engine() {
         done(&folder, &format!("bake field.npy -o {normals} {words} --normals {normals}"));
         let path = |name: &str| folder.path(&format!("{normals}/{name}"));
         let reader = ktx2::Reader::new(std::fs::read(path("bent_normal.ktx2")).unwrap()).unwrap();
+        // The file alone has the convention, too.
+        let key = reader.key_value_data().find(|(key, _)| *key == "ridgelight.normals");
+        let stated = json(&path("manifest.json"))["maps"][0]["normals"]["convention"].clone();
+        let text = String::from_utf8(key.expect("a key").1.to_vec()).unwrap();
+        assert_eq!(text.trim_end_matches('\0'), stated.as_str().unwrap());
         let texels: Vec<i16> = levels(&reader)[0]
             .as_chunks::<2>()
             .0
