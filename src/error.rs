@@ -1,7 +1,9 @@
+use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// All errors. Each displays as one sentence: what is wrong, where, and what was expected.
-#[derive(Debug, thiserror::Error)]
+/// All errors. Each displays as one sentence: what is wrong, where, and what was expected. So does `Debug`, which a `main` that returns
+/// the error prints.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// Wrong content of a file.
@@ -54,6 +56,12 @@ pub enum Error {
     },
 }
 
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl Error {
     /// An [`Error::File`].
     pub fn file(
@@ -82,5 +90,16 @@ impl Error {
         expected: impl Into<String>,
     ) -> Self {
         Error::Setting { name: name.into(), found: found.into(), expected: expected.into() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_main_that_returns_an_error_prints_a_sentence() {
+        let error = Error::setting("azimuths", "3", "4 to 1024");
+        assert_eq!(format!("{error:?}"), "azimuths: found 3, expected 4 to 1024");
     }
 }

@@ -19,7 +19,7 @@ vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
     int first = flips ? mirrored : lane;
 #ifdef LANE_BUFFER
     if (READS_LANE_BUFFER) {
-        // A clamped index moves only lanes beyond the field.
+        // Clamping changes only the heights of lanes beyond the field.
         int length = (lanes + 3) & ~3;
         uint base = uint(clamp(LANE_BUFFER_PAD + march * length + first, 0, LANE_BUFFER_PAD + steps * length));
         row = vec4(lane_buffer[base], lane_buffer[base + 1u], lane_buffer[base + 2u], lane_buffer[base + 3u]);

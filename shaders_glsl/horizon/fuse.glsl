@@ -129,12 +129,12 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
     near = transpose(near);
     // Rises per step.
     Met found = Met(vec4(NO_SLOPE), vec4(0.0));
-    // Unrolled, RADV takes more registers, and with specular a third fewer waves fit.
+    // If the loop is unrolled, RADV uses more registers: with specular, occupancy falls by a third.
     [[dont_unroll]] for (int i = 0; i < 3; i++) {
         ivec4 back = first + i;
         bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(y, ivec4(edge))));
         y -= azimuth.shear;
-        // Where the far end is off the field, the line leaves it through the edge of lane 0, which is the lane that it passes.
+        // A line whose far end is off the field leaves at lane 0, the lane line that it crosses. That crossing, and those before it, count.
         bvec4 is_on = bvec4(uvec4(exists) & uvec4(greaterThanEqual(y, ivec4(lowest_on))));
         ivec4 cell = y >> CELL_SHIFT;
         mat4 far;
@@ -152,8 +152,8 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
         bvec4 passes_lane = greaterThan(end, vec4(1.0 + HAIR));
         vec4 to_lane = (1.0 - from) * per_lane;
         found = higher_where(own, is_on, found, far[1], far[2], from, vec4(back));
-        // A diagonal from (0, 0) to (1, 1) is crossed inside the cell, or else the lane line is. One from (1, 0) to (0, 1) is
-        // always crossed, then perhaps the lane line, then the next diagonal.
+        // With diagonals from (0, 0) to (1, 1), a line crosses either the diagonal inside the cell or the lane line. With
+        // diagonals from (1, 0) to (0, 1) it always crosses one; if it also crosses the lane line, the next diagonal may follow.
         bvec4 is_lane = bvec4(uvec4(along) & uvec4(passes_lane));
         bvec4 is_inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
         bvec4 crosses = mix(greaterThan(end, vec4(0.0)), bvec4(uvec4(is_inside) | uvec4(passes_lane)), along);
@@ -168,7 +168,9 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
         near = far;
         near_cell = cell;
     }
-    found.slope *= 1.0 / azimuth.step_m;
+    // Where nothing is crossed there is no slope, whatever the step.
+    bvec4 crosses_any = greaterThan(found.slope, vec4(LOWEST_MET));
+    found.slope = mix(vec4(NO_SLOPE), found.slope * (1.0 / azimuth.step_m), crosses_any);
     met = higher(met, found);
 }
 

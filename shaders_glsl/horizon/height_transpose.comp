@@ -44,7 +44,7 @@ void main() {
         int groups = (lanes + 3) >> 2;
         int at = march * groups + group;
         lane_buffer[at + 1] = four;
-        // Finite heights for reads past the first and the last lane, which have no weight.
+        // Finite heights for reads past the first and the last lane, which have no weight: LANE_BUFFER_PAD of sweep.glsl, one texel.
         if (at == 0) {
             lane_buffer[0] = four;
         }

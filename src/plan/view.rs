@@ -54,7 +54,7 @@ impl Default for ViewOptions {
 /// that of the lit field, viewed from its own eye ([`Picture::eye_m`](super::Picture)). Behind the ground are the uniform
 /// sky and the environment by direction, bilinear between the centres of its texels; suns, key lights and sphere lights are
 /// not visible. With an orthographic lens, visible ground reaches above and below the scene's heights by the height of the
-/// picture and the heights' own extent along the view.
+/// picture and the heights' own extent along the view. For unknown heights, that range is from 0 to the target's height.
 ///
 /// A plinth has walls from the field's edges down to a level base, and none where the ground is lower. It hides what is
 /// behind it, but depths are those of the ground. Its light is not computed: a face has a fixed share of the ground's mean
@@ -283,7 +283,7 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
         Lens::Orthographic { height_m } => {
             let back = camera.axes()[2];
             let eye = camera.eye_m();
-            // Of heights that only the device knows, the target tells most.
+            // Where only the device knows the heights, the target is the best estimate of the ground's height.
             let target = scene.field.is_unknown().then(|| DVec3::from(camera.target_m));
             let (near, far) = corners(&scene.field)
                 .into_iter()
@@ -332,7 +332,7 @@ mod tests {
     use crate::scene::{HeightField, Lights, Quality, Surface};
     use std::f64::consts::FRAC_PI_2;
 
-    /// Ground about the target has a depth, whatever its height; a field of known heights has its own range.
+    /// With unknown heights, ground near the target is within the depth range, whatever the target's height.
     #[test]
     fn an_orthographic_view_of_unknown_heights_reaches_its_target() {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };

@@ -502,7 +502,7 @@ const char *ridgelight_last_error(void);
 // The version of the library: major << 16 | minor << 8 | patch.
 uint32_t ridgelight_version(void);
 
-// Whether the library is compatible with a program compiled with a header of `version`, which is
+// Whether the library is compatible with a program compiled against the version `header`, its
 // RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor, and the library must not be
 // older.
 //

@@ -81,7 +81,7 @@ pub extern "C" fn ridgelight_version() -> u32 {
     RIDGELIGHT_VERSION
 }
 
-/// Whether the library is compatible with a program compiled with a header of `version`, which is
+/// Whether the library is compatible with a program compiled against the version `header`, its
 /// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor, and the library must not be
 /// older.
 ///

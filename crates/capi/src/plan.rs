@@ -303,7 +303,7 @@ pub unsafe extern "C" fn ridgelight_plan_output(
     // SAFETY: as the caller says.
     done(|| unsafe {
         let image = handle(plan, "plan")?.0.outputs().nth(index as usize);
-        // Passes read outputs of earlier ones, such as bounces the direct light.
+        // Later passes sample outputs of earlier ones: bounces read the direct light.
         let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
         describe(image.map(|(_, r)| r), index, usage, info)
     })

@@ -79,7 +79,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         let sides = args.sizes.iter().map(|side| [*side as u32; 2]);
         let all: Vec<_> = sides.flat_map(|size| counts.iter().map(move |n| (size, *n))).collect();
         let one = [(plan.size, quality.azimuths)];
-        earlier.check_any(if args.sizes.is_empty() { &one } else { &all })?;
+        earlier.check_any(&args.against, if args.sizes.is_empty() { &one } else { &all })?;
     }
     if args.sizes.is_empty() {
         check_names(&args.passes, &plan, args.forms.then_some(&quality))?;
@@ -166,9 +166,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         warnings.iter().for_each(|text| setup::warning(text));
     }
     if let Some(path) = &args.bencher {
-        let mut given = plan.settings.clone();
-        given.retain(|(name, _)| args.quality.gives(name));
-        files::write_json(path, &rows::bencher(&all, &given))?;
+        files::write_json(path, &rows::bencher(&all, |name| args.quality.gives(name)))?;
     }
     if let Some(path) = &args.global.json {
         let argv: Vec<_> =

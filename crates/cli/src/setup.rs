@@ -209,7 +209,7 @@ pub fn scene(
     if let Some(sphere) = far.next_back() {
         let [east, north, _] = sphere.position_m;
         warning(&format!(
-            "a sphere light at {east},{north} is farther from the field than the field is wide: both count in metres from its south-west \
+            "the sphere light at {east},{north} is far outside the field: give metres east and north from its south-west \
              corner"
         ));
     }

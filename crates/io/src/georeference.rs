@@ -10,6 +10,10 @@ const PROJECTED_CRS: u16 = 3072;
 const HORIZONTAL_KEYS: [std::ops::RangeInclusive<u16>; 2] = [2048..=3071, 3072..=4095];
 const CITATIONS: [u16; 2] = [2049, 3073];
 
+const LINEAR_UNIT: u16 = 3076;
+/// The EPSG code of the metre.
+const METRE: f64 = 9001.0;
+
 /// Pseudo-Mercator on a sphere of the Earth's equatorial radius.
 const WEB_MERCATOR: [u16; 2] = [3857, 3785];
 
@@ -96,8 +100,17 @@ impl GeoKeys {
     pub fn is_web_mercator(&self) -> bool {
         match self.defined_by_code() {
             Some(code) => WEB_MERCATOR.contains(&code),
-            None => is_named_web_mercator(&self.ascii),
+            None => is_named_web_mercator(&self.ascii) && self.is_without_offsets(),
         }
+    }
+
+    /// Whether origins and false coordinates of the projection (keys 3080 to 3087) are 0, and the unit is the metre.
+    fn is_without_offsets(&self) -> bool {
+        self.parameters().iter().all(|(key, values)| match *key {
+            3080..=3087 => values.iter().all(|value| *value == 0.0),
+            LINEAR_UNIT => values[..] == [METRE],
+            _ => true,
+        })
     }
 
     /// Whether both state the same horizontal reference system, or none.

@@ -21,7 +21,7 @@ use crate::open::{self, Format};
 use crate::png;
 use mosaic::{Choose, Tile, Window};
 pub use raster::StoredHeights;
-pub(crate) use raster::{Cell, Raster, looks_like_degrees, type_name};
+pub(crate) use raster::{Cell, Raster, is_nodata, looks_like_degrees, type_name};
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use sidecar::Sidecar;

@@ -13,7 +13,7 @@ use vulkano::command_buffer::{CommandBufferBeginInfo, CommandBufferLevel, Record
 use vulkano::device::{Device, DeviceCreateInfo, Queue, QueueCreateInfo, QueueFlags};
 use vulkano::format::Format;
 use vulkano::image::view::ImageView;
-use vulkano::image::{Image, ImageCreateInfo, ImageUsage};
+use vulkano::image::{Image, ImageCreateInfo, ImageUsage as Usage};
 use vulkano::instance::{Instance, InstanceCreateInfo};
 use vulkano::memory::allocator::{AllocationCreateInfo, MemoryTypeFilter, StandardMemoryAllocator};
 use vulkano::{Version, VulkanLibrary, VulkanObject};
@@ -44,7 +44,7 @@ fn host(device: &Device, queue: &Queue) -> Any<Host> {
     }
 }
 
-fn image(memory: &Arc<StandardMemoryAllocator>, usage: ImageUsage) -> Any<Arc<ImageView>> {
+fn image(memory: &Arc<StandardMemoryAllocator>, usage: Usage) -> Any<Arc<ImageView>> {
     let extent = [COLS as u32, ROWS as u32, 1];
     let info = ImageCreateInfo { format: Format::R32_SFLOAT, extent, usage, ..Default::default() };
     let image = Image::new(memory.clone(), info, AllocationCreateInfo::default())?;
@@ -78,9 +78,8 @@ fn main() -> Any<()> {
     let scene = ash_host::scene()?;
     let host = host(&device, &queue)?;
     let mut renderer = ash_host::prepare(&host, &scene)?;
-    let heights = image(&memory, ImageUsage::SAMPLED | ImageUsage::TRANSFER_DST)?;
-    let light =
-        image(&memory, ImageUsage::STORAGE | ImageUsage::SAMPLED | ImageUsage::TRANSFER_SRC)?;
+    let heights = image(&memory, Usage::SAMPLED | Usage::TRANSFER_DST)?;
+    let light = image(&memory, Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC)?;
     let [filled_from, read_to] =
         [texels(&memory, scene.field.heights_m())?, texels(&memory, &[0.0; ROWS * COLS])?];
 

@@ -124,8 +124,8 @@ impl Renderer {
         Err(Error::setting("passes", found, expected))
     }
 
-    /// Requires contents of outputs that these passes go on with: the first pass of the plan that uses such an output is not
-    /// among them.
+    /// Requires that an output has contents if these passes use it without the plan's first pass that uses it: they read it or
+    /// add to it.
     pub(super) fn check_kept(&self, outputs: &[ImageArg], passes: &[usize]) -> Result<()> {
         for (arg, (id, resource)) in outputs.iter().zip(self.plan.outputs()) {
             let uses = |pass: &usize| self.plan.passes[*pass].bindings.contains(&Some(id));

@@ -46,7 +46,7 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
     assert_eq!(again, fresh);
 }
 
-/// A plan made for another device is refused before an image is made: validation would report that.
+/// A plan with images beyond the device's limits is refused before Vulkan is called, so validation reports nothing.
 #[test]
 fn a_plan_beyond_the_device_is_refused() {
     let mut device = Device::new();

@@ -383,8 +383,8 @@ fn two_changes_before_a_recording_are_both_drawn() {
     gpu.end(frame);
 }
 
-/// A pass that adds to an output which other passes began needs its contents; the whole frame, and what begins with the first of
-/// them, need none.
+/// A pass that adds to an output needs the contents that earlier passes wrote. A whole frame needs none, and neither does a list
+/// that includes the first pass of the sum.
 #[test]
 fn outputs_that_passes_go_on_with_must_have_contents() {
     let mut device = Device::new();

@@ -5,8 +5,8 @@ use clap::Args;
 use super::values::{FACTOR, number};
 
 const AFTER_HELP: &str = "\
-Channels that both files have are compared by name, in linear light; a .png is decoded from sRGB. Channels of only one \
-file are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
+Channels are compared in linear light; a .png is decoded from sRGB. They are paired by name; if each file has only \
+one channel, these two are compared. Channels of only one file are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
 standard_error. Voids are NaN, or alpha 0. A void in both files is masked and counted; a void in only one file fails \
 the command.
 

@@ -143,7 +143,8 @@ impl SurfaceArgs {
 pub struct FieldArgs {
     /// Grid spacing in metres. Default the file's, else 1
     ///
-    /// Spacing of columns, and of rows where it differs. Overrides the file's. Where the unit of the heights is not known, in that unit.
+    /// Spacing of columns, and of rows where it differs. Overrides the file's. If the file does not state its unit of
+    /// height, give the spacing in that unit.
     #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true, help_heading = "Input")]
     pub cell: Option<[f64; 2]>,
     /// Multiply heights by this factor; not 0. Default 1

@@ -174,12 +174,10 @@ pub fn file(device: &str, driver: &str, peaks: &[Row], rows: &[Row], argv: &[Str
 }
 
 /// Rows as Bencher Metric Format: by benchmark, the measure `latency` in nanoseconds with the interval of its median.
-/// Rows without times are left out. The name of a benchmark is that of the row, with its size and azimuths and the other
-/// settings that the user has `given`, so that a history holds one configuration.
-pub fn bencher(rows: &[Row], given: &[(String, String)]) -> Value {
-    let other = |(name, _): &&(String, String)| !["size", "azimuths"].contains(&&**name);
-    let text = |(name, value): &(String, String)| format!(" {name}={value}");
-    let settings: String = given.iter().filter(other).map(text).collect();
+/// Rows without times are left out. The name of a benchmark is that of the row, with its size, its azimuths, and those of its other
+/// settings that the user `gives`. Field, lights and surface are not in it.
+pub fn bencher(rows: &[Row], gives: impl Fn(&str) -> bool) -> Value {
+    let other = |name: &str| gives(name) && !["size", "azimuths"].contains(&name);
     let metric = |row: &Row| {
         let mut latency = json!({ "value": row.times?.median });
         if let Some([low, high]) = row.interval {
@@ -187,8 +185,10 @@ pub fn bencher(rows: &[Row], given: &[(String, String)]) -> Value {
             latency["upper_value"] = high.into();
         }
         let [cols, rows] = row.size;
-        let name =
-            format!("{} {} {cols}x{rows} {} azimuths{settings}", row.pass, row.mode, row.azimuths);
+        let mut name = format!("{} {} {cols}x{rows} {} azimuths", row.pass, row.mode, row.azimuths);
+        for (setting, value) in row.settings.iter().filter(|(setting, _)| other(setting)) {
+            name += &format!(" {setting}={value}");
+        }
         Some((name, json!({ "latency": latency })))
     };
     Value::Object(rows.iter().filter_map(metric).collect())
@@ -252,8 +252,11 @@ pub mod tests {
         near("texels_per_s", 1e9);
         let per = row.ms_per_azimuth_and_mega().unwrap();
         assert!((per - 3.0 / 64.0 * 1024.0).abs() < 1e-9, "32² is a 1024th of 2^20: {per}");
-        let given = [("azimuths", "64"), ("fuse", "aimed")].map(|(n, v)| (n.into(), v.into()));
-        let bencher = bencher(std::slice::from_ref(&row), &given);
+        row.settings = [("azimuths", "64"), ("fuse", "aimed"), ("hull", "private")]
+            .map(|(n, v)| (n.into(), v.into()))
+            .into();
+        let gives = |name: &str| ["azimuths", "fuse"].contains(&name);
+        let bencher = bencher(std::slice::from_ref(&row), gives);
         let name = "sky_shade sky 0+32 in_flow 32x32 64 azimuths fuse=aimed";
         let latency = &bencher[name]["latency"];
         let metric = json!({ "value": 3e6, "lower_value": 0.0, "upper_value": 6e6 });

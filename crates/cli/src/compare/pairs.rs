@@ -8,7 +8,7 @@ use ridgelight_io::Planes;
 use ridgelight_trade::flip;
 
 use crate::args::{CompareArgs, Renamed};
-use crate::setup::extension;
+use crate::setup::{self, extension};
 
 /// A channel of both.
 pub struct Pair<'a> {
@@ -111,11 +111,20 @@ impl<'a> Pairs<'a> {
                 return Err(unlike(args, "number of channels", count(a), count(b)));
             }
         }
-        // One map each: `hillshade` here is `band1` of another program. And the planes of an .npy have numbers.
-        if a.names.len() == 1 && b.names.len() == 1 || is_numbered {
-            return Self::in_order(a, b, numbered[0]).checked(args);
+        // One map each: `hillshade` here is `band1` of another program. Horizons of an .npy have numbers, in the order of the azimuths.
+        let is_single = a.names.len() == 1 && b.names.len() == 1;
+        if is_single && !args.horizons || args.horizons && is_numbered {
+            let [first, second] = [&a.names[0], &b.names[0]];
+            if is_single && first != second && !is_numbered && !args.quiet {
+                setup::note(&format!(
+                    "the only channel of each file is compared: {first} with {second}"
+                ));
+            }
+            // A picture's name, for flags of pictures.
+            let takes_names_of_reference = numbered[0] || second == "Y";
+            return Self::in_order(a, b, takes_names_of_reference).checked(args);
         }
-        if args.horizons
+        if (args.horizons || is_numbered)
             && let Some((a, b)) = a.names.iter().zip(&b.names).find(|(a, b)| a != b)
         {
             return Err(unlike(args, "channels", a.clone(), b.clone()));

@@ -171,7 +171,8 @@ fn values(facts: &Value) -> String {
     }
 }
 
-/// Prints a command that the present device can run, and why it is not the plainest one.
+/// Prints a command that the present device can run, and why it is not the plainest one. Where the file has no cell size, the command
+/// has a placeholder, which a sentence explains.
 fn say_start(args: &InfoArgs, read: &FieldFile) -> Result<()> {
     let (device, limits) = super::limits(&args.global)?;
     let is_given = args.global.memory_budget.is_some();

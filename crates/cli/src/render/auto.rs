@@ -237,7 +237,7 @@ pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
     )];
     if let Goal::MaxCost(most) = goal {
         let [time, most] = [trial.ns, most].map(|ns| digits(ns / 1e6));
-        all.push(format!("judged by {time} ms, the median time of its frames, for at most {most} ms; the first frame takes longer"));
+        all.push(format!("a frame takes {time} ms (median), the goal is at most {most} ms; the first frame takes longer"));
     }
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
     if let Some(last) = missed.last() {

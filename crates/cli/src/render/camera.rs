@@ -122,7 +122,7 @@ fn placed(
     };
     if let Some(p) = args.look_at.filter(|p| !is_near(field, [p.east_m, p.north_m])) {
         crate::setup::warning(&format!(
-            "--look-at {},{} is outside the field: both count in metres from its south-west corner",
+            "--look-at {},{} is far outside the field: give metres east and north from its south-west corner",
             p.east_m, p.north_m
         ));
     }

@@ -68,7 +68,7 @@ fn gpu_an_earlier_report_gives_verdicts() {
     let other = ["bench", "--size", "48", "--azimuths", "8", "--runs", "1"];
     let run = folder.run(&[&other[..], &SMALL, &["--against", "now.json,slow.json"]].concat());
     assert_eq!(run.status, Some(2), "{}", run.err);
-    let expected = "found a report of 32x32 texels with 8 azimuths, expected rows of 48x48 texels with 8 azimuths";
+    let expected = "found 32x32 texels with 8 azimuths in now.json, slow.json, expected 48x48 texels with 8 azimuths";
     assert!(run.err.contains(expected), "{}", run.err);
     // Before anything is verified or timed.
     assert_eq!(run.out, "", "{}", run.err);

@@ -105,8 +105,7 @@ fn gpu_cameras_write_pictures_and_depth() {
     assert_eq!(json(&folder.path("v.json"))["settings"]["mesh_error_m"], 0);
 }
 
-/// Without numbers the camera is that of 180,30, named south, and the picture has 2048 x 1152 pixels.
-/// A place far from the field is likely one in the coordinates of its file: metres count from its corner.
+/// A position far from the field is probably in the coordinates of the file. Positions are metres from the field's south-west corner.
 #[test]
 fn gpu_places_far_from_the_field_get_a_warning() {
     let folder = Folder::new();
@@ -124,6 +123,7 @@ fn gpu_places_far_from_the_field_get_a_warning() {
     }
 }
 
+/// Without numbers the camera is that of 180,30, named south, and the picture has 2048 x 1152 pixels.
 #[test]
 fn gpu_a_camera_without_numbers_stands_in_the_south() {
     let folder = Folder::new();

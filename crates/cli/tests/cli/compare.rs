@@ -321,21 +321,26 @@ fn voids_are_masked_and_counted() {
     assert!(run.out.ends_with("beyond any bound: Y has 1 masked in one only\n"), "{}", run.out);
 }
 
-/// 4 azimuths of 4 × 3: 48 horizons, off by 0 but for 1° at azimuth 2, row 1, column 3 and -0.5° at
-/// azimuth 0's first. Median 0; rank 0.999 · 47 = 46.953 stands between 0.5° and 1°.
-/// The one map of each file, whatever its name: other programs name it otherwise. Of several maps the names count.
+/// Files with one map each are compared whatever the names, because other programs use other names. Several maps are paired by name.
 #[test]
 fn single_maps_are_compared_whatever_their_names() {
     let folder = Folder::new();
     let (level, off) = ([0.25_f32; 12], [0.75_f32; 12]);
     write(&folder, "a.exr", &[("hillshade", level)]);
     write(&folder, "b.exr", &[("band1", off)]);
-    let json = figures(&folder, "a.exr b.exr");
-    assert_eq!(
-        [&json["rows"][0]["channel"], &json["only_in_b"]],
-        [&json!("hillshade"), &json!([])]
-    );
-    assert_eq!(json["rows"][0]["rmse"], json!(0.5));
+    let run = folder.run_str("compare a.exr b.exr --json j.json");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let note = "note: the only channel of each file is compared: hillshade with band1";
+    assert_eq!(run.err.trim_end(), note);
+    let json = crate::needs_vulkan::json(&folder.path("j.json"));
+    let row = &json["rows"][0];
+    assert_eq!([&row["channel"], &json["only_in_b"]], [&json!("hillshade"), &json!([])]);
+    assert_eq!(row["rmse"], json!(0.5));
+    // Several planes of an .npy have no names by which to pair them.
+    write(&folder, "d.npy", &[("", level); 2]);
+    write(&folder, "e.exr", &[("x", level), ("y", level)]);
+    let run = folder.run_str("compare d.npy e.exr");
+    assert!(run.err.contains("channels: found 0, expected x as in e.exr"), "{}", run.err);
     write(&folder, "c.exr", &[("band1", level), ("band2", off)]);
     let run = folder.run_str("compare a.exr c.exr");
     assert_eq!(run.status, Some(1), "{}", run.out);
@@ -346,6 +351,8 @@ fn single_maps_are_compared_whatever_their_names() {
     );
 }
 
+/// 4 azimuths of 4 × 3: 48 horizons without error, except 1° at azimuth 2, row 1, column 3 and -0.5° at
+/// azimuth 0's first. Median 0; rank 0.999 · 47 = 46.953 lies between 0.5° and 1°.
 #[test]
 fn horizons_are_compared_in_degrees() {
     let folder = Folder::new();

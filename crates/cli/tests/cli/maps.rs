@@ -201,8 +201,11 @@ fn gpu_flat_ground_is_open() {
     write_field(&folder, 9, |_, _| 7.0);
     for method in ["sweep", "brute-force", "pyramid"] {
         for negative in ["", " --negative"] {
-            done(&folder, &format!("openness field.npy -o o.npy --method {method}{negative}"));
-            assert_eq!(read(&folder.path("o.npy")).planes[0], [90.0; 81], "{method}");
+            for cell in ["0.001", "1", "20000"] {
+                let words = format!("--method {method}{negative} --cell {cell}");
+                done(&folder, &format!("openness field.npy -o o.npy {words}"));
+                assert_eq!(read(&folder.path("o.npy")).planes[0], [90.0; 81], "{words}");
+            }
         }
     }
     for command in ["ao", "svf"] {

@@ -4,7 +4,7 @@ use super::npy::Array;
 use crate::environment::hdr;
 use crate::exr;
 use crate::georeference::Georeference;
-use crate::heights::{geotiff, tif};
+use crate::heights::{geotiff, is_nodata, tif};
 use crate::open::{self, Format};
 use crate::png;
 use ridgelight::{Error, Result};
@@ -102,7 +102,7 @@ fn from_tiff(path: &Path, bytes: &[u8]) -> Result<Planes> {
         names.push(name.unwrap_or_else(|| format!("band{}", band + 1)));
         scales.push(geotiff::scale(path, &mut image.tiff, band)?);
     }
-    let is_void = |value: f64| nodata.is_some_and(|nodata| value as f32 == nodata as f32);
+    let is_void = |value: f64| nodata.is_some_and(|nodata| is_nodata(value, nodata, true));
     let known = |value: f64| if is_void(value) { f32::NAN } else { value as f32 };
     let (mut planes, _) = image.read(0..bands, nodata.unwrap_or(0.0), known)?;
     for (plane, [scale, offset]) in planes.iter_mut().zip(scales) {

@@ -1,6 +1,5 @@
 //! Projected coordinate reference systems of the EPSG registry: their unit, and where true north is.
 
-use super::raster::metres_a_degree;
 use crate::georeference::{GeoKeys, Georeference};
 use proj4rs::{Proj, transform::transform};
 
@@ -35,8 +34,22 @@ pub(super) fn unit_m(code: u16) -> Option<f64> {
     Some(projected.to_meter()).filter(|unit| unit.is_finite() && *unit > 0.0)
 }
 
-/// East and north, in metres on the ground, along the columns and along the rows of a grid: of lines of 2 [`HALF_LINE_M`] about a
-/// position in the units of the system.
+/// A position on the WGS84 ellipsoid, metres from its centre: through longitude 0 and 90 degrees on the equator, and the pole.
+fn position_m([longitude, latitude]: [f64; 2]) -> [f64; 3] {
+    const EQUATOR_M: f64 = 6_378_137.0;
+    const SQUARED_ECCENTRICITY: f64 = 0.006_694_379_990_141_3;
+    let (sin_long, cos_long) = longitude.to_radians().sin_cos();
+    let (sin_lat, cos_lat) = latitude.to_radians().sin_cos();
+    let radius = EQUATOR_M / (1.0 - SQUARED_ECCENTRICITY * sin_lat * sin_lat).sqrt();
+    [
+        radius * cos_lat * cos_long,
+        radius * cos_lat * sin_long,
+        radius * (1.0 - SQUARED_ECCENTRICITY) * sin_lat,
+    ]
+}
+
+/// Two lines of 2 [`HALF_LINE_M`] through a position in the units of the system, one along x and one along y: east and north
+/// components of each, in metres on the ground.
 fn lines_m(code: u16, [x, y]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [projected, geographic] = systems(code)?;
     let half = HALF_LINE_M / projected.to_meter();
@@ -45,13 +58,16 @@ fn lines_m(code: u16, [x, y]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         transform(&projected, &geographic, &mut point).ok()?;
         Some([point.0.to_degrees(), point.1.to_degrees()])
     };
+    // The chord, on the plane that touches the ellipsoid in the middle: near a pole, longitudes tell no distance.
+    let [longitude, latitude] = at(x, y)?.map(f64::to_radians);
+    let (sin_long, cos_long) = longitude.sin_cos();
+    let (sin_lat, cos_lat) = latitude.sin_cos();
     let line = |dx: f64, dy: f64| {
-        let ([west, south], [east, north]) = (at(x - dx, y - dy)?, at(x + dx, y + dy)?);
-        let [a_longitude, a_latitude] = metres_a_degree((south + north) / 2.0);
-        // Across the 180th meridian, longitudes change sign.
-        let right = ((east - west + 540.0).rem_euclid(360.0) - 180.0) * a_longitude;
-        let line = [right, (north - south) * a_latitude];
-        line.iter().all(|x| x.is_finite()).then_some(line)
+        let [from, to] = [position_m(at(x - dx, y - dy)?), position_m(at(x + dx, y + dy)?)];
+        let [i, j, k] = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        let right = cos_long * j - sin_long * i;
+        let up = cos_lat * k - sin_lat * (cos_long * i + sin_long * j);
+        (right.is_finite() && up.is_finite()).then_some([right, up])
     };
     Some([line(half, 0.0)?, line(0.0, half)?])
 }
@@ -78,15 +94,16 @@ pub(super) fn scale_warning(
     let [across, along] = lines.map(|[x, y]| x.hypot(y) / (2.0 * HALF_LINE_M));
     let differs = [across, along].iter().any(|scale| (scale - 1.0).abs() > SCALE_NOTED);
     differs.then(|| {
+        // Five digits.
+        let text = |length: f64| {
+            let decimals = (4.0 - length.log10().floor()).clamp(0.0, 12.0) as usize;
+            format!("{length:.decimals$}")
+        };
+        let [read, are] = [cell_m, [cell_m[0] * across, cell_m[1] * along]].map(|cell| cell.map(text));
         format!(
-            "metres of EPSG:{code} are not metres on the ground: cells are read as {:.2} x {:.2} m, and are {:.2} x {:.2} m at the \
-             centre. `cell_m` {:.4},{:.4} corrects it",
-            cell_m[0],
-            cell_m[1],
-            cell_m[0] * across,
-            cell_m[1] * along,
-            cell_m[0] * across,
-            cell_m[1] * along
+            "metres of EPSG:{code} are not metres on the ground: cells are read as {} x {} m, and are {} x {} m at the \
+             centre. `cell_m` {},{} takes those",
+            read[0], read[1], are[0], are[1], are[0], are[1]
         )
     })
 }
@@ -124,6 +141,28 @@ mod tests {
             assert!((unit_m(code).unwrap() / unit - 1.0).abs() < 1e-12, "{code}");
         }
         assert_eq!([unit_m(4326), unit_m(1)], [None, None]);
+    }
+
+    /// Polar stereographic: about the pole the scale is that of the standard parallel, (1 + sin 71°) / 2 and (1 + sin 70°) / 2 on a
+    /// sphere, within the flattening of 1/298; EPSG:3996 has 75°.
+    #[test]
+    fn scales_at_the_pole_are_those_of_the_standard_parallel() {
+        for (code, parallel, warns) in
+            [(3031, 71.0_f64, true), (3413, 70.0, true), (3996, 75.0, false)]
+        {
+            let expected = 2.0 / (1.0 + parallel.to_radians().sin());
+            let lines = lines_m(code, [0.0, 0.0]).unwrap();
+            for [right, up] in lines {
+                let found = right.hypot(up) / (2.0 * HALF_LINE_M);
+                assert!(
+                    (found / expected - 1.0).abs() < 1.0 / 298.0,
+                    "{code}: {found} for {expected}"
+                );
+            }
+            let keys = GeoKeys { entries: vec![[3072, 0, 1, code]], ..GeoKeys::default() };
+            let at = Georeference { corner: [-100.0, 100.0], cell: [100.0; 2], keys };
+            assert_eq!(scale_warning(&at, [2, 2], [100.0; 2]).is_some(), warns, "{code}");
+        }
     }
 
     /// Of two points that lie true north of each other, the azimuth from the columns of the grid becomes 0 by the note.

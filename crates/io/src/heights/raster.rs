@@ -103,13 +103,7 @@ impl Raster {
         let own = self.nodata;
         if let Some(nodata) = options.nodata.or(own) {
             let single = self.single;
-            let is_marked = |value: f64, nodata: f64| {
-                value == nodata
-                    || value.is_nan() && nodata.is_nan()
-                    || single && nodata.is_finite() && value as f32 == nodata as f32
-                    // The largest floats, written with few digits. No height is so large.
-                    || nodata.abs() > 1e30 && (value / nodata - 1.0).abs() < 1e-5
-            };
+            let is_marked = |value: f64, nodata: f64| is_nodata(value, nodata, single);
             let marks = self.voids.get_or_insert_with(|| vec![false; self.values.len()]);
             for (mark, value) in marks.iter_mut().zip(&self.values) {
                 *mark |= is_marked(*value, nodata);
@@ -124,7 +118,7 @@ impl Raster {
         {
             let of = if count == 1 { "1 height is" } else { &format!("{count} heights are") };
             self.warnings.push(format!(
-                "{of} {mark}, which often marks a void, and the file does not name it so; `nodata` {mark} makes voids of them"
+                "{of} {mark}, which often marks a void, and the file does not state it as no data; `nodata` {mark} makes voids of them"
             ));
         }
         let unit_m = self.unit_m.unwrap_or(1.0);
@@ -196,7 +190,7 @@ impl Raster {
         notes
     }
 
-    /// What is assumed of cells of unknown size or unit, and how much one size for all rows is wrong.
+    /// Warnings of assumed cell sizes and units, and of the error of one cell width for all rows.
     pub fn cell_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         match self.cell {
@@ -212,13 +206,23 @@ impl Raster {
         let error = self.cell.width_error(self.rows);
         if let Some(error) = error.filter(|error| *error > WIDTH_NOTED) {
             warnings.push(format!(
-                "cells have the width of the centre in all rows: in the first or the last row it is wrong by {:.0} %. `gdalwarp -t_srs` \
-                 to a projection with metres avoids this",
+                "all rows take the cell width of the centre: in the first or the last row the error is {:.0} %. To avoid it, \
+                 reproject with `gdalwarp -t_srs` to a local system such as UTM",
                 100.0 * error
             ));
         }
         warnings
     }
+}
+
+/// Whether a value is a file's value for no data. `single`: values are f32, or are compared as such.
+pub(crate) fn is_nodata(value: f64, nodata: f64, single: bool) -> bool {
+    // Floats near the largest, often written with few digits. No height is so large.
+    const HUGE: f64 = 1e30;
+    value == nodata
+        || value.is_nan() && nodata.is_nan()
+        || single && nodata.is_finite() && value as f32 == nodata as f32
+        || nodata.abs() > HUGE && value.abs() > HUGE && value.signum() == nodata.signum()
 }
 
 /// The cell size in a file.
@@ -268,9 +272,9 @@ impl Cell {
         }
     }
 
-    /// By how much the width of cells in the first or the last of so many rows differs from that in the middle, over the latter.
+    /// By how much the width of cells in the middle differs from that in the first or the last of so many rows, over the latter.
     fn width_error(self, rows: usize) -> Option<f64> {
-        let half = rows as f64 / 2.0;
+        let half = (rows.max(1) - 1) as f64 / 2.0;
         let (middle, _) = self.degrees()?;
         let ends = [-half, half].map(|step| match self {
             Self::Degrees { cell, latitude, .. } => Some(latitude + step * cell[1]),
@@ -281,7 +285,7 @@ impl Cell {
             Self::Unknown | Self::Metres(_) => None,
         });
         let width = |latitude: f64| metres_a_degree(latitude.clamp(-90.0, 90.0))[0];
-        let error = |latitude: &f64| (width(*latitude) / width(middle) - 1.0).abs();
+        let error = |latitude: &f64| (width(middle) / width(*latitude) - 1.0).abs();
         ends.iter().flatten().map(error).reduce(f64::max)
     }
 
@@ -318,12 +322,14 @@ pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
 /// below 0.1, or the grid goes round the Earth. A projected grid with so small a cell at the origin of its projection would be
 /// mistaken for degrees; the caller can override the cell size.
 pub(crate) fn looks_like_degrees(x: [f64; 2], y: [f64; 2], cell: [f64; 2]) -> bool {
-    // Grids of centres reach half a cell beyond.
-    let is_round = (x[1] - x[0]).abs() >= 350.0 && (y[1] - y[0]).abs() >= 100.0;
     let is_fine = cell.iter().all(|c| *c > 0.0 && *c < 0.1);
-    let beyond = if is_round { 0.5 * cell[1].abs() } else { 0.0 };
-    x.iter().all(|x| x.abs() <= 360.0 + beyond)
-        && y.iter().all(|y| y.abs() <= 90.0 + beyond)
+    // A column more or less than the circle; grids of centres reach half a cell beyond.
+    let is_round = ((x[1] - x[0]).abs() - 360.0).abs() <= cell[0].abs()
+        && (y[1] - y[0]).abs() >= 100.0
+        && cell.iter().all(|c| *c > 0.0 && *c <= 30.0);
+    let beyond = if is_round { cell.map(|c| 0.5 * c) } else { [0.0; 2] };
+    x.iter().all(|x| x.abs() <= 360.0 + beyond[0])
+        && y.iter().all(|y| y.abs() <= 90.0 + beyond[1])
         && (is_fine || is_round)
 }
 
@@ -341,6 +347,9 @@ mod tests {
             ([-0.5, 359.5], [-90.5, 90.5], [1.0; 2], true),
             ([0.0, 300.0], [0.0, 80.0], [1.0; 2], false),
             ([0.0, 360.0], [0.0, 120.0], [1.0; 2], false),
+            ([-1.25, 361.25], [-90.0, 90.0], [2.5, 1.0], true),
+            ([-360.0, 360.0], [-90.0, 90.0], [1.0; 2], false),
+            ([-200.0, 200.0], [-75.0, 75.0], [1.0; 2], false),
             ([500_000.0, 500_360.0], [-90.0, 90.0], [1.0; 2], false),
         ] {
             assert_eq!(looks_like_degrees(x, y, cell), is_guessed, "{x:?} {y:?} {cell:?}");
@@ -363,9 +372,10 @@ mod tests {
             let mercator = Cell::Mercator { cell: [100.0, cell_y], northing_m: middle };
             for cell in [degrees, mercator] {
                 let (centre, _) = cell.degrees().unwrap();
-                let ends = [60.0 - half_deg, 60.0 + half_deg];
+                let of_rows = 99.0 / 100.0;
+                let ends = [60.0 - of_rows * half_deg, 60.0 + of_rows * half_deg];
                 let error =
-                    |end: f64| (end.to_radians().cos() / centre.to_radians().cos() - 1.0).abs();
+                    |end: f64| (centre.to_radians().cos() / end.to_radians().cos() - 1.0).abs();
                 let expected = f64::max(error(ends[0]), error(ends[1]));
                 let found = cell.width_error(rows).unwrap();
                 // The ellipsoid changes widths by less than e² of their change.
@@ -377,14 +387,14 @@ mod tests {
         assert_eq!(Cell::Metres([1.0; 2]).width_error(100), None);
     }
 
-    /// GDAL's tools write the least f32 with few digits. Values near it are no heights, so nothing else is lost.
+    /// GDAL's tools write the least f32 with few digits. Values of such a size are no heights, so nothing else is lost.
     #[test]
     fn the_largest_floats_mark_voids_with_few_digits() {
         let least = f64::from(f32::MIN);
         let mut raster = Raster {
-            nodata: Some(-3.40282e38),
+            nodata: Some(-3.4e38),
             single: true,
-            ..Raster::bare(1, 3, vec![least, 5.0, -3.4e38])
+            ..Raster::bare(1, 3, vec![least, 5.0, -least])
         };
         raster.interpret(&HeightOptions::default());
         assert_eq!(raster.voids, Some(vec![true, false, false]));

@@ -80,18 +80,19 @@ impl Sidecar {
             }
             (None, None) => None,
         };
+        let is_lost = |at: &Georeference| crs.is_none() && at.keys.crs().is_none();
+        if let Some(name) = srs.filter(|_| at.as_ref().is_none_or(is_lost)) {
+            warnings.push(format!(
+                "the coordinate reference system in {name} is not read, and neither is its position: cells are in metres unless the \
+                 file's own coordinates fit degrees. Use `gdalwarp -t_srs` with an EPSG code to write a GeoTIFF with both"
+            ));
+        }
         let Some(mut at) = at else {
             warnings.extend(
                 crs.map(|(name, _)| format!("{name} is not read: the field has no position")),
             );
             return;
         };
-        if let Some(name) = srs.filter(|_| crs.is_none() && at.keys.crs().is_none()) {
-            warnings.push(format!(
-                "the coordinate reference system in {name} is not read: cells are taken in metres, and outputs have none. \
-                 `gdalwarp -t_srs` to one with an EPSG code writes it into the file"
-            ));
-        }
         let mut used = None;
         match crs.filter(|_| at.keys == GeoKeys::default()) {
             None => {}
@@ -184,7 +185,14 @@ impl Crs {
         };
         let name = rest.split('"').nth(1)?.to_owned();
         let parts = parts(text)?;
-        let is_mercator = !is_geographic && is_named_web_mercator(text);
+        // Other meridians, origins or units are other systems.
+        let is_zero = |part: &&str| {
+            let value = part.rsplit(',').next().unwrap_or_default().trim_end_matches([']', ' ']);
+            value.parse() == Ok(0.0) || part.to_ascii_lowercase().contains("scale_factor")
+        };
+        let mut parameters = parts.iter().filter(|part| part.starts_with("PARAMETER["));
+        let is_plain = parameters.all(is_zero) && !text.to_ascii_lowercase().contains("foot");
+        let is_mercator = !is_geographic && is_plain && is_named_web_mercator(text);
         let named = || if is_mercator { Some(3857) } else { code_named(&name) };
         let code = parts.iter().find_map(|part| code_of(part)).or_else(named);
         // The unit of a projected system comes after that of its geographic system.
@@ -262,6 +270,20 @@ mod tests {
     const WKT1: &str = r#"PROJCS["NAD83 / New York Long Island (ftUS)",GEOGCS["NAD83",UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4269"]],PROJECTION["Lambert_Conformal_Conic_2SP"],UNIT["US survey foot",0.304800609601219,AUTHORITY["EPSG","9003"]],AXIS["X",EAST],AUTHORITY["EPSG","2263"]]"#;
     const WKT2: &str = "GEOGCRS[\"ETRS89\",DATUM[\"ETRS\"],PRIMEM[\"Greenwich\",0],CS[ellipsoidal,2],\n ANGLEUNIT[\"degree\",0.0174532925199433],\n    ID[\"EPSG\",4258]]\n";
     const OWN: &str = r#"PROJCS["mine",GEOGCS["x",UNIT["Degree",0.0174532925199433]],PROJECTION["y"],UNIT["Foot",0.3048]]"#;
+
+    /// ESRI's Web Mercator is EPSG:3857; about another meridian, or in feet, it is another system.
+    #[test]
+    fn only_plain_web_mercator_has_its_code() {
+        let wkt = |meridian: &str, unit: &str| {
+            format!(
+                r#"PROJCS["WGS_1984_Web_Mercator_Auxiliary_Sphere",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Mercator_Auxiliary_Sphere"],PARAMETER["False_Easting",0.0],PARAMETER["Central_Meridian",{meridian}],PARAMETER["Auxiliary_Sphere_Type",0.0],UNIT[{unit}]]"#
+            )
+        };
+        let code = |meridian, unit| Crs::of_wkt(&wkt(meridian, unit)).expect("a system").code;
+        assert_eq!(code("0.0", r#""Meter",1.0"#), Some(3857));
+        assert_eq!(code("180.0", r#""Meter",1.0"#), None);
+        assert_eq!(code("0.0", r#""Foot_US",0.304800609601219"#), None);
+    }
 
     #[test]
     fn systems_are_found_by_code_or_name() {

@@ -68,7 +68,7 @@ impl MapFiles<'_> {
             if self.has(Format::Dds) && [cols, rows].iter().any(|side| !side.is_multiple_of(4)) {
                 all.push(format!(
                     "Direct3D loads a .dds of blocks only if its sides are multiples of 4, and these are {cols} x {rows}; \
-                     load the .ktx2, or cut the field with --bbox"
+                     cut the field with --bbox, or omit --compress"
                 ));
             }
         }

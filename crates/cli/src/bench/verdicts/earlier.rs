@@ -119,8 +119,8 @@ impl Earlier {
     /// Refuses a run of these columns, rows and azimuths if no report has a row of any of them.
     ///
     /// # Errors
-    /// As above; the error lists what the last report has.
-    pub fn check_any(&self, wanted: &[([u32; 2], u32)]) -> Result<()> {
+    /// As above; the error lists what the reports of these paths have.
+    pub fn check_any(&self, paths: &[PathBuf], wanted: &[([u32; 2], u32)]) -> Result<()> {
         let text = |all: &[([u32; 2], u32)]| {
             let of = |([cols, rows], azimuths): &([u32; 2], u32)| {
                 format!("{cols}x{rows} texels with {azimuths} azimuths")
@@ -131,10 +131,12 @@ impl Earlier {
         if self.0.iter().flat_map(|report| &report.rows).any(|row| wanted.contains(&of(row))) {
             return Ok(());
         }
-        let mut has: Vec<_> = self.last().rows.iter().map(of).collect();
+        let mut has: Vec<_> = self.0.iter().flat_map(|report| &report.rows).map(of).collect();
+        has.sort_unstable();
         has.dedup();
-        let found = format!("a report of {}", text(&has));
-        Err(Error::setting("--against", found, format!("rows of {}", text(wanted))))
+        let files: Vec<_> = paths.iter().map(|path| path.display().to_string()).collect();
+        let found = format!("{} in {}", text(&has), files.join(", "));
+        Err(Error::setting("--against", found, text(wanted)))
     }
 
     /// Whether a report does not state its scene.

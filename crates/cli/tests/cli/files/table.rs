@@ -53,7 +53,7 @@ const ROWS: [Row; 7] = [
     Row {
         file: "`.npz`",
         example: "a.npz",
-        heights: "the array `elevation`, `heights`, `height`, `z`, or the only one; `dx` and `dy`, in degrees where `xmin`, `xmax`, `ymin` and `ymax` fit longitudes and latitudes",
+        heights: "the array `elevation`, `heights`, `height`, `z`, or the only one; `dx` and `dy`; degrees if `xmin`, `xmax`, `ymin` and `ymax` are longitudes and latitudes, and cells are below 0.1 or the grid spans the Earth",
         nodata: "no",
         unit: "metres",
         compared: "values, cell size",
