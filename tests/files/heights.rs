@@ -418,7 +418,7 @@ fn geotiff_places_and_units() {
     for (tags, said) in [
         (vec![(34264, Tag::Doubles(&matrix(1.0)))], "rotated"),
         (vec![(34264, Tag::Doubles(&[1.0, 2.0]))], "2 numbers"),
-        (vec![(33550, Tag::Doubles(&[30.0, -20.0, 0.0]))], "north up"),
+        (vec![(33550, Tag::Doubles(&[30.0, -20.0, 0.0]))], "rows from north to south"),
         (vec![(33550, Tag::Doubles(&[f64::NAN, 1.0, 0.0]))], "positive sizes"),
         (vec![scale(), tie(), (34735, Tag::Shorts(&projected(1)))], "unit 1"),
         (vec![scale(), (34735, Tag::Shorts(&[1, 1, 0, 1, 1024, 0, 1, 2]))], "latitude"),

@@ -361,11 +361,13 @@ fn notes_leave_standard_output_to_results() {
 fn quiet_commands_print_warnings() {
     let folder = Folder::new();
     crate::needs_vulkan::write_field(&folder, 4, |_, _| 1.0);
-    // Degrees become metres, with a note and without a warning.
+    // Degrees become metres, with a note. That they are degrees is a guess without a reference system, which is a warning.
     let head = "ncols 4\nnrows 4\nxllcorner 10\nyllcorner 50\ncellsize 0.01\n";
     folder.write("level.asc", (head.to_owned() + &"7 ".repeat(16)).as_bytes());
+    let guess = "warning: level.asc: no reference system: read as degrees, as its numbers fit; otherwise use --cell\n";
     let warning = "warning: field.npy: the file has no cell size: --cell 1 is assumed\n";
-    for (file, expected) in [("field.npy", warning), ("field.npy --cell 5", ""), ("level.asc", "")]
+    for (file, expected) in
+        [("field.npy", warning), ("field.npy --cell 5", ""), ("level.asc", guess)]
     {
         for command in [
             format!("plan {file} --sky 1 --sun 10,-5 -q"),
