@@ -18,37 +18,38 @@ const WAITS: usize = 60;
 
 /// Name and arguments of each report. Commas are between flags, semicolons in lists.
 pub const REPORTS: [(&str, &str); 10] = [
-    ("frame", "--size 1024,--azimuths 64,--fuse aimed-nearest"),
-    ("environment", "--size 1024,--azimuths 64,--fuse aimed-nearest,--env assets/sky_512x256.hdr"),
+    ("frame", "--size 1024,--azimuths 64,--fuse aimed-around"),
+    ("environment", "--size 1024,--azimuths 64,--fuse aimed-around,--env assets/sky_512x256.hdr"),
     ("forms", "--size 1024,--azimuths 64,--forms,--passes FORMS"),
-    ("sizes", "--sizes 256;512;1024;2048;4096,--fuse aimed-nearest,--azimuth-list 64"),
-    ("azimuths", "--sizes 1024,--fuse aimed-nearest,--azimuth-list 8;16;32;64;128;256"),
+    ("sizes", "--sizes 256;512;1024;2048;4096,--fuse aimed-around,--azimuth-list 64"),
+    ("azimuths", "--sizes 1024,--fuse aimed-around,--azimuth-list 8;16;32;64;128;256"),
     (
         "bounces0",
-        "--size 512,--azimuths 64,--fuse aimed-nearest,--subsample 2,--bounces 0,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 0,--passes light_resolve",
     ),
     (
         "bounces1",
-        "--size 512,--azimuths 64,--fuse aimed-nearest,--subsample 2,--bounces 1,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 1,--passes light_resolve",
     ),
     (
         "bounces2",
-        "--size 512,--azimuths 64,--fuse aimed-nearest,--subsample 2,--bounces 2,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 2,--passes light_resolve",
     ),
     (
         "bounces3",
-        "--size 512,--azimuths 64,--fuse aimed-nearest,--subsample 2,--bounces 3,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 3,--passes light_resolve",
     ),
     (
         "bounces4",
-        "--size 512,--azimuths 64,--fuse aimed-nearest,--subsample 2,--bounces 4,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 4,--passes light_resolve",
     ),
 ];
 
 /// The forms that are compared with a scalar sweep.
-pub const FORMS: [&str; 5] = [
+pub const FORMS: [&str; 6] = [
     "horizon_sweep lines 1",
     "sky_shade aimed-nearest",
+    "sky_shade aimed-around",
     "surface_sweep exact",
     "pyramid_march stack",
     "horizon_march brute",
