@@ -107,6 +107,14 @@ pub(crate) fn sweeps() -> Vec<Case> {
             Quality { lines: Lines::TwoCells, fuse: Fuse::AimedAround, ..base },
             true,
         ),
+        // At the edges lines cross nothing, and steps of kilometres must not make a slope of that.
+        horizons(
+            "aimed around, cells of kilometres",
+            field(19, 22, [20_000.0, 15_000.0], |r, c| 9e3 * ((r * r + 5 * c) % 7) as f64),
+            Border::Open,
+            Quality { fuse: Fuse::AimedAround, ..base },
+            true,
+        ),
         horizons(
             "private f32, slopes f16",
             rough(25, 34, 6),

@@ -312,6 +312,12 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     // A minute is enough for the finest settings.
     assert!(number(&settings, "azimuths") >= 256.0, "{settings}");
     assert!(number(&settings, "error_at_most") < 0.01, "{settings}");
+    // Without --quiet the time that decided is printed beside the goal; the choice is that of the cache.
+    let run = folder.run_str(&args.replace("--quiet ", ""));
+    let said = run.out.lines().find(|line| line.starts_with("a frame takes ")).expect("a time");
+    let ms = said.split(' ').nth(3).and_then(|ms| ms.parse::<f64>().ok()).expect("a number");
+    assert!(0.0 < ms && ms <= 60000.0, "{said}");
+    assert!(said.contains("the goal is at most 60000 ms"), "{said}");
 }
 
 /// One texel, and one beside a void: all texels are probes.
