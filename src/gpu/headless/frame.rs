@@ -189,7 +189,6 @@ impl Headless {
     ///
     /// # Errors
     /// The device's.
-    /// The device's.
     pub fn draw(&self, frame: &mut Frame) -> Result<Vec<Timing>> {
         let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
         self.draw_passes(frame, &all)

@@ -43,6 +43,7 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let [top, left] = [0, 1].map(|axis| corners.iter().map(|c| c[axis]).min().unwrap_or(0));
     let [bottom, right] = ends.fold([i64::MIN; 2], |[b, r], [y, x]| [b.max(y), r.max(x)]);
     let size = [bottom.abs_diff(top) as usize, right.abs_diff(left) as usize];
+    let mixed = mixed_units(&tiles);
     let window = match bbox {
         Some(bbox) => Window::of(&first, Some(&shifted(&at, [top, left])), size, bbox)?,
         None => Window::whole(size),
@@ -63,6 +64,9 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let bare = Raster::bare(rows, cols, values);
     let mut whole = Raster { data_type, cell_unit_m, nodata, scale, unit_m, ..bare };
     let mut sums = Sums::default();
+    // What is said of files: notes and warnings.
+    let mut said = [Remarks::default(), Remarks::default()];
+    let mut used = 0;
     // Whether a file holds the grid point, and whether none has its height.
     let mut is_held = vec![false; rows * cols];
     let mut voids = vec![true; rows * cols];
@@ -96,21 +100,19 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
         if !is_used {
             continue;
         }
+        used += 1;
         for (own, count) in raster.replaced {
             match whole.replaced.iter_mut().find(|(mark, _)| mark.to_bits() == own.to_bits()) {
                 Some((_, sum)) => *sum += count,
                 None => whole.replaced.push((own, count)),
             }
         }
-        for (all, own) in [(&mut whole.notes, raster.notes), (&mut whole.warnings, raster.warnings)]
-        {
-            for text in own {
-                if !all.contains(&text) {
-                    all.push(text);
-                }
-            }
+        for (all, own) in said.iter_mut().zip([raster.notes, raster.warnings]) {
+            own.into_iter().for_each(|text| all.add(&path, text));
         }
     }
+    [whole.notes, whole.warnings] = said.map(|remarks| remarks.texts(used));
+    whole.warnings.extend(mixed);
     let gaps = is_held.iter().filter(|is_held| !**is_held).count();
     whole.notes.extend(sums.note());
     if gaps > 0 {
@@ -122,6 +124,21 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     whole.voids = Some(voids);
     whole.cell = cell;
     Ok(moved(whole, &at, [top, left]))
+}
+
+/// A warning where some tiles have heights in another unit than metres and others state none, which count as metres.
+fn mixed_units(tiles: &[Tile]) -> Option<String> {
+    let name = |tile: &Tile| tile.path.display().to_string();
+    let other = |tile: &Tile| tile.raster.unit_m.filter(|unit| *unit != 1.0);
+    let (scaled, unit) = tiles.iter().find_map(|tile| Some((tile, other(tile)?)))?;
+    let unknown: Vec<_> = tiles.iter().filter(|t| t.raster.unit_m.is_none()).map(name).collect();
+    (!unknown.is_empty()).then(|| {
+        format!(
+            "in {}: no unit of height, so metres are assumed; {} has units of {unit} m",
+            unknown.join(", "),
+            name(scaled)
+        )
+    })
 }
 
 /// The position of a tile.
@@ -185,6 +202,29 @@ pub(super) fn size_of_part(
         }
         other => other,
     })
+}
+
+/// Texts about files, and which files each is about.
+#[derive(Default)]
+struct Remarks(Vec<(String, Vec<String>)>);
+
+impl Remarks {
+    fn add(&mut self, path: &Path, text: String) {
+        let name = path.display().to_string();
+        match self.0.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, names)) => names.push(name),
+            None => self.0.push((text, vec![name])),
+        }
+    }
+
+    /// The texts, with the names of their files where they are not about all of the `used` ones.
+    fn texts(self, used: usize) -> Vec<String> {
+        let named = |(text, names): (String, Vec<String>)| match names.len() == used {
+            true => text,
+            false => format!("in {}: {text}", names.join(", ")),
+        };
+        self.0.into_iter().map(named).collect()
+    }
 }
 
 /// Overlaps of tiles.

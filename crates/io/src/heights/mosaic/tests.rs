@@ -116,6 +116,33 @@ fn gaps_and_differences_are_noted() {
 }
 
 #[test]
+fn texts_name_their_files_unless_they_are_about_all() {
+    let mut tiles =
+        [("a", [0, 0]), ("b", [0, 2]), ("c", [2, 0])].map(|(n, at)| tile(n, at, [2, 2]));
+    for (i, tile) in tiles.iter_mut().enumerate() {
+        tile.1.warnings = vec!["all".to_owned(), ["first", "others", "others"][i].to_owned()];
+    }
+    let field = joined(tiles.into()).unwrap();
+    assert_eq!(field.warnings, ["all", "in a: first", "in b, c: others"]);
+}
+
+#[test]
+fn units_that_only_some_files_state_are_warned_about() {
+    let warnings = |units: [Option<f64>; 3]| {
+        let mut tiles =
+            [("a", [0, 0]), ("b", [0, 2]), ("c", [2, 0])].map(|(n, at)| tile(n, at, [2, 2]));
+        tiles.iter_mut().zip(units).for_each(|(tile, unit)| tile.1.unit_m = unit);
+        joined(tiles.into()).unwrap().warnings
+    };
+    assert_eq!(
+        warnings([None, Some(0.3048), None]),
+        ["in a, c: no unit of height, so metres are assumed; b has units of 0.3048 m"]
+    );
+    assert!(warnings([None, Some(1.0), None]).is_empty());
+    assert!(warnings([Some(1.0), Some(0.3048), Some(1.0)]).is_empty());
+}
+
+#[test]
 fn a_void_takes_the_height_of_another_file() {
     let mut first = tile("a", [0, 0], [2, 2]);
     first.1.voids = Some(vec![false, true, false, true]);
