@@ -70,8 +70,9 @@ impl Report<'_> {
         } else if self.is_at_most(point) {
             format!(
                 "The ground truth's own error may be {}, which hides that of these settings and \
-                    of slower ones. A path-traced reference (`ridgelight reference`, \
-                    --reference) or a larger --budget can resolve them.",
+                    of slower ones. A reference with more paths (`ridgelight reference \
+                    --until-error`, --reference) can resolve them; without a reference, so can a \
+                    larger --budget.",
                 percent(own)
             )
         } else {
