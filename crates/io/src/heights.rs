@@ -170,7 +170,7 @@ pub fn read_mosaic<P: AsRef<Path>>(paths: &[P], options: &HeightOptions) -> Resu
     };
     let tiles =
         paths.iter().map(|path| tile(path.as_ref(), options)).collect::<Result<Vec<_>>>()?;
-    finish(first, mosaic::joined(tiles, options.bbox)?, options)
+    finish(first, mosaic::joined(tiles, options.bbox, options.is_unit_known)?, options)
 }
 
 /// A file of a mosaic, without the values that are not near the box: it may lie outside some files.

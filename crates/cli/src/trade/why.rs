@@ -68,12 +68,11 @@ impl Report<'_> {
             "The ground truth's own error is unknown, so the errors here are relative to it."
                 .to_owned()
         } else if self.is_at_most(point) {
+            let own = percent(own);
             format!(
-                "The ground truth's own error may be {}, which hides that of these settings and \
-                    of slower ones. A reference with more paths (`ridgelight reference \
-                    --until-error`, --reference) can resolve them; without a reference, so can a \
-                    larger --budget.",
-                percent(own)
+                "The ground truth's own error may be {own}. Errors of these and slower settings may be \
+                    below it. To resolve them, use `--reference FILE` with a file of `ridgelight \
+                    reference --until-error E`, with E below {own}."
             )
         } else {
             format!(

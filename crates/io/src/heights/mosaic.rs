@@ -20,7 +20,12 @@ pub(super) struct Tile {
 }
 
 /// A grid that holds all tiles, or their part in a box. Its heights are those of the first tile that has one there.
-pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
+/// `is_unit_known` is that of [`HeightOptions`](super::HeightOptions).
+pub(super) fn joined(
+    tiles: Vec<Tile>,
+    bbox: Option<[f64; 4]>,
+    is_unit_known: bool,
+) -> Result<Raster> {
     let Tile { path: first, raster: grid, .. } = &tiles[0];
     let (first, at) = (first.clone(), placed(first, grid)?.clone());
     let (cell, cell_unit_m) = (grid.cell, grid.cell_unit_m);
@@ -43,7 +48,6 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let [top, left] = [0, 1].map(|axis| corners.iter().map(|c| c[axis]).min().unwrap_or(0));
     let [bottom, right] = ends.fold([i64::MIN; 2], |[b, r], [y, x]| [b.max(y), r.max(x)]);
     let size = [bottom.abs_diff(top) as usize, right.abs_diff(left) as usize];
-    let mixed = mixed_units(&tiles);
     let window = match bbox {
         Some(bbox) => Window::of(&first, Some(&shifted(&at, [top, left])), size, bbox)?,
         None => Window::whole(size),
@@ -64,9 +68,9 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     let bare = Raster::bare(rows, cols, values);
     let mut whole = Raster { data_type, cell_unit_m, nodata, scale, unit_m, ..bare };
     let mut sums = Sums::default();
-    // What is said of files: notes and warnings.
-    let mut said = [Remarks::default(), Remarks::default()];
-    let mut used = 0;
+    // Notes and warnings of the files.
+    let mut remarks = [Remarks::default(), Remarks::default()];
+    let (given, mut units) = (tiles.len(), Vec::new());
     // Whether a file holds the grid point, and whether none has its height.
     let mut is_held = vec![false; rows * cols];
     let mut voids = vec![true; rows * cols];
@@ -100,19 +104,19 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
         if !is_used {
             continue;
         }
-        used += 1;
+        units.push((path.display().to_string(), raster.unit_m));
         for (own, count) in raster.replaced {
             match whole.replaced.iter_mut().find(|(mark, _)| mark.to_bits() == own.to_bits()) {
                 Some((_, sum)) => *sum += count,
                 None => whole.replaced.push((own, count)),
             }
         }
-        for (all, own) in said.iter_mut().zip([raster.notes, raster.warnings]) {
+        for (all, own) in remarks.iter_mut().zip([raster.notes, raster.warnings]) {
             own.into_iter().for_each(|text| all.add(&path, text));
         }
     }
-    [whole.notes, whole.warnings] = said.map(|remarks| remarks.texts(used));
-    whole.warnings.extend(mixed);
+    [whole.notes, whole.warnings] = remarks.map(|remarks| remarks.texts(given));
+    whole.warnings.extend(mixed_units(&units).filter(|_| !is_unit_known));
     let gaps = is_held.iter().filter(|is_held| !**is_held).count();
     whole.notes.extend(sums.note());
     if gaps > 0 {
@@ -126,17 +130,20 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
     Ok(moved(whole, &at, [top, left]))
 }
 
-/// A warning where some tiles have heights in another unit than metres and others state none, which count as metres.
-fn mixed_units(tiles: &[Tile]) -> Option<String> {
-    let name = |tile: &Tile| tile.path.display().to_string();
-    let other = |tile: &Tile| tile.raster.unit_m.filter(|unit| *unit != 1.0);
-    let (scaled, unit) = tiles.iter().find_map(|tile| Some((tile, other(tile)?)))?;
-    let unknown: Vec<_> = tiles.iter().filter(|t| t.raster.unit_m.is_none()).map(name).collect();
+/// A warning if some files have heights in a unit other than metres and others in no known unit: those are read as metres.
+fn mixed_units(units: &[(String, Option<f64>)]) -> Option<String> {
+    let other = |(name, unit): &(String, Option<f64>)| {
+        unit.filter(|unit| *unit != 1.0).map(|unit| (name.clone(), unit))
+    };
+    let (scaled, unit) = units.iter().find_map(other)?;
+    let unknown: Vec<_> =
+        units.iter().filter(|(_, unit)| unit.is_none()).map(|(name, _)| name.as_str()).collect();
     (!unknown.is_empty()).then(|| {
         format!(
-            "in {}: no unit of height, so metres are assumed; {} has units of {unit} m",
-            unknown.join(", "),
-            name(scaled)
+            "in {}: no known unit of height, so heights are read as metres; those of {scaled} are in units of \
+             {unit} m. `z_scale` applies to all files. State the unit in the file, as with \
+             `gdal_edit.py -units ft FILE`",
+            unknown.join(", ")
         )
     })
 }
@@ -217,9 +224,9 @@ impl Remarks {
         }
     }
 
-    /// The texts, with the names of their files where they are not about all of the `used` ones.
-    fn texts(self, used: usize) -> Vec<String> {
-        let named = |(text, names): (String, Vec<String>)| match names.len() == used {
+    /// The texts, with the names of their files if they are not about all `given` ones.
+    fn texts(self, given: usize) -> Vec<String> {
+        let named = |(text, names): (String, Vec<String>)| match names.len() == given {
             true => text,
             false => format!("in {}: {text}", names.join(", ")),
         };

@@ -55,8 +55,7 @@ impl<'a> Image<'a> {
         let bits = color.bit_depth();
         if ![8, 16, 32, 64].contains(&bits) {
             let found = format!("{bits} bits a sample");
-            let expected =
-                "8, 16, 32 or 64 bits; `gdal_translate -ot UInt16 -co NBITS=16` writes such a file";
+            let expected = "8, 16, 32 or 64 bits; `gdal_translate -ot Float32 -co NBITS=32` writes such a file";
             return Err(Error::file(path, "header", found, expected));
         }
         let mut number = |tag: Tag| tiff.find_tag_unsigned::<u16>(tag).map_err(header);

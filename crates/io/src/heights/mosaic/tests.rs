@@ -16,7 +16,7 @@ fn joined_in(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
         window.cut(&mut raster);
         super::Tile { path, raster, window }
     };
-    super::joined(tiles.into_iter().map(cut).collect(), bbox)
+    super::joined(tiles.into_iter().map(cut).collect(), bbox, false)
 }
 
 fn joined(tiles: Vec<Tile>) -> Result<Raster> {
@@ -128,18 +128,21 @@ fn texts_name_their_files_unless_they_are_about_all() {
 
 #[test]
 fn units_that_only_some_files_state_are_warned_about() {
-    let warnings = |units: [Option<f64>; 3]| {
+    let warnings = |units: [Option<f64>; 3], bbox| {
         let mut tiles =
             [("a", [0, 0]), ("b", [0, 2]), ("c", [2, 0])].map(|(n, at)| tile(n, at, [2, 2]));
         tiles.iter_mut().zip(units).for_each(|(tile, unit)| tile.1.unit_m = unit);
-        joined(tiles.into()).unwrap().warnings
+        joined_in(tiles.into(), bbox).unwrap().warnings
     };
-    assert_eq!(
-        warnings([None, Some(0.3048), None]),
-        ["in a, c: no unit of height, so metres are assumed; b has units of 0.3048 m"]
-    );
-    assert!(warnings([None, Some(1.0), None]).is_empty());
-    assert!(warnings([Some(1.0), Some(0.3048), Some(1.0)]).is_empty());
+    let mixed = [None, Some(0.3048), None];
+    let [warning] = &warnings(mixed, None)[..] else { panic!("one warning") };
+    let begin = "in a, c: no known unit of height, so heights are read as metres; those of b are in units of 0.3048 m.";
+    assert!(warning.starts_with(begin), "{warning}");
+    // A box without the file in feet, and one without the others.
+    assert!(warnings(mixed, Some([5001.0, 8921.0, 5009.0, 8999.0])).is_empty());
+    assert!(warnings(mixed, Some([5021.0, 8961.0, 5039.0, 8999.0])).is_empty());
+    assert!(warnings([None, Some(1.0), None], None).is_empty());
+    assert!(warnings([Some(1.0), Some(0.3048), Some(1.0)], None).is_empty());
 }
 
 #[test]
