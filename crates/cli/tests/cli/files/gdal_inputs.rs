@@ -108,6 +108,25 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
     assert_eq!(read, 5 * kinds.len() * 10);
 }
 
+/// The command in the message about 12 and 24 bits keeps the heights.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_converts_12_and_24_bits_as_the_message_says() {
+    let folder = Folder::new();
+    for (kind, bits, most) in [("UInt16", 12, 4095_u32), ("UInt32", 24, 16_777_215)] {
+        folder.write("a.asc", format!("ncols 2 nrows 2 cellsize 30\n0 1 2049 {most}").as_bytes());
+        let values = [0.0, 1.0, 2049.0, most as f32];
+        tool(&folder, &format!("gdal_translate -q -ot {kind} -co NBITS={bits} a.asc odd.tif"));
+        let error = read_field(&folder.path("odd.tif"), &HeightOptions::default()).unwrap_err();
+        let error = error.to_string();
+        assert!(error.contains(&format!("{bits} bits")), "{error}");
+        let command = error.split('`').nth(1).expect("a command");
+        tool(&folder, &format!("{command} -q odd.tif whole.tif"));
+        let options = HeightOptions { cell_m: Some([30.0; 2]), ..HeightOptions::default() };
+        assert_eq!(heights(&folder.path("whole.tif"), &options), values, "{command}");
+    }
+}
+
 /// Overviews, which gdaladdo writes into a file or beside it, are not read in place of the heights.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

@@ -7,6 +7,10 @@ type Tile = (PathBuf, Raster);
 
 /// Joins tiles, each cut to what is near the box.
 fn joined_in(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
+    joined_of(tiles, bbox, false)
+}
+
+fn joined_of(tiles: Vec<Tile>, bbox: Option<[f64; 4]>, is_unit_known: bool) -> Result<Raster> {
     let cut = |(path, mut raster): Tile| {
         let size = [raster.rows, raster.cols];
         let window = match (&raster.georeference, bbox) {
@@ -16,7 +20,7 @@ fn joined_in(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
         window.cut(&mut raster);
         super::Tile { path, raster, window }
     };
-    super::joined(tiles.into_iter().map(cut).collect(), bbox, false)
+    super::joined(tiles.into_iter().map(cut).collect(), bbox, is_unit_known)
 }
 
 fn joined(tiles: Vec<Tile>) -> Result<Raster> {
@@ -124,16 +128,22 @@ fn texts_name_their_files_unless_they_are_about_all() {
     }
     let field = joined(tiles.into()).unwrap();
     assert_eq!(field.warnings, ["all", "in a: first", "in b, c: others"]);
+    // With a box only one file is read, and named.
+    let mut tiles = [tile("a", [0, 0], [2, 2]), tile("b", [0, 2], [2, 2])];
+    tiles.iter_mut().for_each(|tile| tile.1.warnings = vec!["all".to_owned()]);
+    let field = joined_in(tiles.into(), Some([5021.0, 8961.0, 5039.0, 8999.0])).unwrap();
+    assert_eq!(field.warnings, ["in b: all"]);
 }
 
 #[test]
 fn units_that_only_some_files_state_are_warned_about() {
-    let warnings = |units: [Option<f64>; 3], bbox| {
+    let of = |units: [Option<f64>; 3], bbox, is_unit_known| {
         let mut tiles =
             [("a", [0, 0]), ("b", [0, 2]), ("c", [2, 0])].map(|(n, at)| tile(n, at, [2, 2]));
         tiles.iter_mut().zip(units).for_each(|(tile, unit)| tile.1.unit_m = unit);
-        joined_in(tiles.into(), bbox).unwrap().warnings
+        joined_of(tiles.into(), bbox, is_unit_known).unwrap().warnings
     };
+    let warnings = |units, bbox| of(units, bbox, false);
     let mixed = [None, Some(0.3048), None];
     let [warning] = &warnings(mixed, None)[..] else { panic!("one warning") };
     let begin = "in a, c: no known unit of height, so heights are read as metres; those of b are in units of 0.3048 m.";
@@ -141,6 +151,7 @@ fn units_that_only_some_files_state_are_warned_about() {
     // A box without the file in feet, and one without the others.
     assert!(warnings(mixed, Some([5001.0, 8921.0, 5009.0, 8999.0])).is_empty());
     assert!(warnings(mixed, Some([5021.0, 8961.0, 5039.0, 8999.0])).is_empty());
+    assert!(of(mixed, None, true).is_empty());
     assert!(warnings([None, Some(1.0), None], None).is_empty());
     assert!(warnings([Some(1.0), Some(0.3048), Some(1.0)], None).is_empty());
 }
