@@ -231,7 +231,7 @@ words! {
         ///
         /// Each texel receives what leaves towards it (Nowrouzezahrai & Snyder 2009, §5.3). Memory: n² colours per texel.
         Vector = "vector",
-        /// The same as f16, in half the memory
+        /// The same, stored in f16: half the memory
         ///
         /// Rounded to 1/2048, below 65504.
         VectorF16 = "vector-f16",

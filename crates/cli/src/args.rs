@@ -226,7 +226,16 @@ Examples:
   ridgelight render dem.tif --sun 250,15 --max-error 0.01 -o within_a_percent.exr";
 
 #[derive(Args)]
-#[command(after_help = RENDER_HELP)]
+#[command(
+    after_help = RENDER_HELP,
+    mut_arg("bounces", |arg| {
+        let help = "Bounces of indirect light, 0 to 64 [default: 0, or 1 in a .png]";
+        arg.hide_default_value(true).help(help).long_help(format!(
+            "{help}\n\nFewer leave hollows darker; more take time in proportion. A .png of the default light has one of 8 azimuths \
+             where that changes it."
+        ))
+    })
+)]
 pub struct RenderArgs {
     #[command(flatten)]
     pub input: Input,
@@ -277,7 +286,9 @@ pub struct RenderArgs {
 
 #[derive(Args)]
 #[command(mut_arg("json", |arg| {
-    arg.help("Write the description as JSON; `--json -` prints it instead of the text")
+    arg.help("Write the description as JSON; without a file, print it instead of the text")
+        .num_args(0..=1)
+        .default_missing_value("-")
         .hide_short_help(false)
 }))]
 pub struct InfoArgs {

@@ -173,6 +173,9 @@ fn compute(
                     let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
+                if of.needs_sphere {
+                    stages.begin(kinds::stage::PROBES);
+                }
                 (of.take)(job, &outputs, files)?;
             }
             Source::Light(of) => {

@@ -343,8 +343,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         file.map_or(Ok(()), |file| file.finish(&about))?;
     }
     if setup::extension(&args.output) == "png" {
-        let (at, quiet) = (georeference.as_ref(), args.global.quiet);
-        world::write(&args.output, &args.input, at, quiet)?;
+        world::write(&args.output, &args.input, georeference.as_ref())?;
     }
     if let Some(json) = &args.global.json {
         if has_layers {

@@ -188,7 +188,7 @@ impl<'a> Job<'a> {
                 metadata.push(("png_range".into(), format!("{black},{white}")));
                 let form = (channels, 8);
                 files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
-                world::write(path, input, place, global.quiet)?;
+                world::write(path, input, place)?;
                 world::note_shape(path, &self.field, place, global.quiet);
             }
             _ => {
@@ -232,11 +232,13 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
     };
+    let words = light("sun").words(&lights).concat();
+    let direction = words.split(',').take(2).collect::<Vec<_>>().join(",");
+    note_unused(&sun, false, args.map.global.quiet);
     let job = Job::new(&args.map, &args.map.surface, setup::of_neighbours)?;
     let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);
-    let words = light("sun").words(&lights).concat();
-    metadata.push(("sun1".into(), words.split(',').take(2).collect::<Vec<_>>().join(",")));
+    metadata.push(("sun1".into(), direction));
     job.write(&HILLSHADE_VALUES, plane, metadata, &[])
 }
 
@@ -246,6 +248,7 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: run `shadow` once per sun"));
     };
+    note_unused(&sun, true, args.map.global.quiet);
     if setup::border(&args.map.surface) == Border::Periodic {
         let expected = "plane or open: `shadow` does not support a periodic field";
         return Err(Error::setting("--border", "periodic", expected));
@@ -267,6 +270,23 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     let absolute = |height: &mut f32| *height = (f64::from(*height) + field.base_m()) as f32;
     planes[1].iter_mut().for_each(absolute);
     job.write_all(&SHADOW_VALUES, planes, metadata, &times)
+}
+
+/// A note on what `render` uses of a sun and a map does not.
+fn note_unused(sun: &Sun, uses_diameter: bool, quiet: bool) {
+    let mut plain = Lights::default();
+    light("sun").add(&mut plain, "0,0").expect("a sun of ours");
+    let Sun { diameter_rad, irradiance, .. } = plain.suns[0];
+    let diameter = !uses_diameter && sun.diameter_rad != diameter_rad;
+    let text = match (diameter, sun.irradiance != irradiance) {
+        (false, false) => return,
+        (true, false) => "diameter changes",
+        (false, true) => "irradiance changes",
+        (true, true) => "diameter and irradiance change",
+    };
+    if !quiet {
+        setup::note(&format!("--sun: its {text} nothing here"));
+    }
 }
 
 /// Lambert's cosine as `gdaldem hillshade` stores it. Inside the field, the mean gradient of the four adjoining cells

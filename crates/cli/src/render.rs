@@ -6,6 +6,8 @@ pub mod camera;
 mod choices;
 pub mod world;
 
+use std::path::Path;
+
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::Tone;
@@ -193,12 +195,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
             let picture = &camera_pixels.radiance;
             let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around), white));
+            if !args.global.quiet {
+                note_black(&args.output, picture, Some(&around));
+            }
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
         if is_png {
-            world::note_stale(&args.output, "it is a camera's", args.global.quiet);
+            world::warn_of_stale(&args.output, "it is a camera's");
         }
     } else if !is_png {
         let georeference = georeference.as_ref();
@@ -214,12 +219,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
         let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids, white));
+        if !args.global.quiet {
+            note_black(&args.output, &picture, voids);
+        }
         shown = Some(exposure);
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
         let (at, quiet) = (georeference.as_ref(), args.global.quiet);
-        world::write(&args.output, &args.input, at, quiet)?;
+        world::write(&args.output, &args.input, at)?;
         world::note_shape(&args.output, &scene.field, at, quiet);
     }
     if let Some(json) = &args.global.json {
@@ -280,6 +288,19 @@ pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>, white: f64) -> 
     // Four digits: a factor that can be typed.
     let exposure = format!("{:.3e}", white / *bright).parse::<f32>().unwrap_or(1.0);
     if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
+}
+
+/// A note on a picture that automatic exposure leaves black: less than a hundredth of it is lit.
+fn note_black(path: &Path, picture: &[[f32; 3]], left_out: Option<&[bool]>) {
+    let counts = |i: usize| !left_out.is_some_and(|v| v[i]);
+    let all = (0..picture.len()).filter(|i| counts(*i)).count();
+    let is_lit = |i: &usize| counts(*i) && picture[*i].iter().any(|v| *v > 0.0);
+    let lit = (0..picture.len()).filter(is_lit).count();
+    if (lit as f64) < (1.0 - EXPOSED_SHARE) * all as f64 {
+        let share = 100.0 * lit as f64 / all as f64;
+        let path = path.display();
+        setup::note(&format!("{path}: {share:.2} % of the picture is lit; --sky lights the rest"));
+    }
 }
 
 /// Refuses light that overflows, although each light is finite.

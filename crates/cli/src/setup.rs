@@ -195,6 +195,7 @@ pub fn scene(
     unlit: Unlit,
     quiet: bool,
 ) -> Result<Scene> {
+    check_suns(&lights.others.0.suns, -90.0)?;
     let set = lights.others.0.suns.iter().filter(|sun| sun.elevation_rad < 0.0).count();
     if set > 0 && !quiet {
         let suns = if set == 1 { "sun is" } else { "suns are" };

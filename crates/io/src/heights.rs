@@ -324,6 +324,7 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
             cell_m
         }
     };
+    warnings.extend(raster.georeference.as_ref().and_then(projection::unknown_warning));
     let stored = raster.stored();
     let Raster { rows, cols, values, voids, georeference, .. } = raster;
     notes.extend(georeference.as_ref().and_then(|at| projection::north_note(at, rows, cols)));

@@ -3,7 +3,7 @@
 use crate::atomic::{Temporary, Written};
 use crate::heights::{Raster, type_name};
 use crate::open;
-use ::png::{BitDepth, ColorType as Kind, Encoder, ScaledFloat};
+use ::png::{BitDepth, ColorType as Kind, Encoder};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
 use ridgelight::scene::Tone;
@@ -183,14 +183,14 @@ pub fn encode_png(
         }
     }
     let kind = if transparent.is_some() { Kind::Rgba } else { Kind::Rgb };
-    packed([cols, rows], (kind, BitDepth::Eight), Meaning::Colours, &samples, metadata)
+    packed([cols, rows], (kind, BitDepth::Eight), &samples, metadata)
 }
 
 /// Writes samples of 8 or 16 bits (big-endian) unchanged. 1 to 4 channels are grey, grey with
 /// alpha, RGB and RGBA.
 ///
-/// The file waits beside its destination. Its gAMA chunk is 1 (linear). `metadata` becomes text
-/// chunks, as in [`write_png`].
+/// The file waits beside its destination. It has no gAMA chunk, which browsers and image editors
+/// would apply to the samples. `metadata` becomes text chunks, as in [`write_png`].
 ///
 /// # Errors
 /// Samples that are not `rows`·`cols` pixels, other channel counts or depths, names that PNG does
@@ -219,25 +219,15 @@ pub fn write_codes_aside(
         let found = format!("{} bytes", samples.len());
         return Err(Error::setting("samples", found, format!("{expected}")));
     }
-    let png = packed([cols, rows], (colour, depth), Meaning::Numbers, samples, metadata)?;
+    let png = packed([cols, rows], (colour, depth), samples, metadata)?;
     let mut file = Temporary::create(path)?;
     file.write(&png)?;
     file.close()
 }
 
-/// What samples are.
-#[derive(PartialEq)]
-enum Meaning {
-    /// sRGB. Texts are tEXt where they are ASCII.
-    Colours,
-    /// Linear: a gAMA chunk of 1.
-    Numbers,
-}
-
 fn packed(
     [cols, rows]: [usize; 2],
     (kind, depth): (Kind, BitDepth),
-    meaning: Meaning,
     samples: &[u8],
     metadata: &[(String, String)],
 ) -> Result<Vec<u8>> {
@@ -249,12 +239,9 @@ fn packed(
     let mut encoder = Encoder::new(&mut png, side(cols)?, side(rows)?);
     encoder.set_color(kind);
     encoder.set_depth(depth);
-    if meaning == Meaning::Numbers {
-        encoder.set_source_gamma(ScaledFloat::new(1.0));
-    }
     let write = || {
         for (name, text) in metadata {
-            match meaning == Meaning::Colours && text.is_ascii() {
+            match text.is_ascii() {
                 true => encoder.add_text_chunk(name.clone(), text.clone())?,
                 false => encoder.add_itxt_chunk(name.clone(), text.clone())?,
             }

@@ -139,7 +139,10 @@ fn camera(text: &str) -> Result<CameraAt, String> {
     if let Some(eighth) = DIRECTIONS.iter().position(|name| *name == named) {
         return Ok(at(45.0 * eighth as f64, ELEVATION));
     }
-    let wrong = || "south, \"from 45 up 30\" or AZ,EL[,DISTANCE] in degrees and metres".to_owned();
+    let wrong = || {
+        "south, north-east or another of eight directions, \"from 45 up 30\", or AZ,EL[,DISTANCE] in degrees and metres"
+            .to_owned()
+    };
     let number = |word: &str| word.parse().map_err(|_| wrong());
     match named.split_whitespace().collect::<Vec<_>>().as_slice() {
         ["from", azimuth] => return Ok(at(number(azimuth)?, ELEVATION)),

@@ -46,7 +46,7 @@ Examples:
 pub const SVF_HELP: &str = "\
 The map `sky-view` of `bake`: flat open ground is 1, a slope of angle a is (1 + cos a)/2. RVT's sky-view factor (Zaksek \
 2011) weights all directions above the horizontal equally, up to 10 pixels away; `visible-sky` of `bake` is the same for \
-horizons of any distance.
+horizons of any distance. gdaldem has no such map.
 
 A .png maps 0.6375 to 1 to the values 0 to 255, as RVT's 8-bit files do; lower values become 0. A .tif has all values.
 

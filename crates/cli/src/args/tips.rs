@@ -21,7 +21,9 @@ const OF_GDALDEM: [(&[&str], &str, &str); 3] = [
 /// Replaces clap's tip, where we have a better one for the words of a command line.
 pub fn add(mut error: clap::Error, parser: &Command, words: &[OsString]) -> clap::Error {
     let tip = match error.kind() {
-        ErrorKind::UnknownArgument => of_gdaldem(&error, parser, words),
+        ErrorKind::UnknownArgument => {
+            negative_camera(words).or_else(|| of_gdaldem(&error, parser, words))
+        }
         ErrorKind::MissingRequiredArgument => missing_input(words),
         _ => None,
     };
@@ -42,6 +44,14 @@ fn of_gdaldem(error: &clap::Error, parser: &Command, words: &[OsString]) -> Opti
     let (_, _, tip) =
         all.find(|(theirs, ours, _)| theirs.contains(&found.as_str()) && has(ours))?;
     Some((*tip).to_owned())
+}
+
+/// `--camera -10,40`: a value that begins like a flag.
+fn negative_camera(words: &[OsString]) -> Option<String> {
+    let at = words.iter().position(|word| word == "--camera")?;
+    let value = words.get(at + 1)?.to_str()?;
+    let is_number = value.strip_prefix('-')?.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    is_number.then(|| format!("write --camera={value}"))
 }
 
 /// `info --json dem.tif`: the input was taken for the file to write.

@@ -22,6 +22,8 @@ const PART: usize = 16;
 const AZIMUTHS_PART: u32 = 4;
 /// A trial should take so many seconds: in a few milliseconds the start of each pass counts too much.
 const TRIAL_SECONDS: f64 = 0.5;
+/// A longer estimate is worth a trial of less work.
+const LONG_SECONDS: f64 = 10.0;
 /// The largest piece of a trial.
 const PIECE_AT_MOST: usize = 512;
 
@@ -42,7 +44,7 @@ pub struct Estimate {
 impl Estimate {
     /// Runs a part of the bake on a piece of the field, twice: only the first run makes pipelines. Then twice on a larger piece where
     /// these runs were short: its sweeps can have another form and other pipelines. The times of the last run are proportional to the
-    /// work.
+    /// work, but for what a smaller piece takes as well where the estimate is long.
     ///
     /// # Errors
     /// Those of the bake. Some may apply to the piece alone.
@@ -61,8 +63,14 @@ impl Estimate {
         }
         let mut stages = job.stages()?;
         for (stage, measured) in stages.iter_mut().zip(&trials) {
-            if measured.work > 0.0 {
-                stage.seconds = measured.seconds / measured.work * stage.work;
+            stage.seconds = scaled(stage.work, measured, None);
+        }
+        // A driver may compile a frame's shaders again each time, which takes as long for a large field.
+        if total(&stages) > LONG_SECONDS {
+            let smaller = trial(gpu, args, job, PIECE / 2)?;
+            took += total(&smaller);
+            for ((stage, measured), less) in stages.iter_mut().zip(&trials).zip(&smaller) {
+                stage.seconds = scaled(stage.work, measured, Some(less));
             }
         }
         let bytes = job.files().iter().map(|(_, bytes)| bytes).sum();
@@ -96,6 +104,15 @@ impl Estimate {
     }
 }
 
+/// Seconds of a stage's work, from a trial's; with a trial of less work, what both spend whatever the work does not grow.
+fn scaled(work: f64, trial: &Stage, less: Option<&Stage>) -> f64 {
+    let fixed = less.filter(|less| less.work < trial.work).map_or(0.0, |less| {
+        let rate = (trial.seconds - less.seconds) / (trial.work - less.work);
+        (trial.seconds - rate.max(0.0) * trial.work).clamp(0.0, trial.seconds)
+    });
+    if trial.work > 0.0 { fixed + (trial.seconds - fixed) / trial.work * work } else { 0.0 }
+}
+
 /// What a trial found, or a note why there is no estimate: some errors apply to the piece of the field alone.
 ///
 /// # Errors
@@ -114,8 +131,11 @@ fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<
     let part = |count: u32, part: u32, least: u32| count.div_ceil(part).max(least).min(count);
     let azimuths = part(job.quality.azimuths, AZIMUTHS_PART, 4);
     let quality = Quality { azimuths, ..*job.quality };
-    // An odd number of directions would have a horizontal one.
-    let directions = part(job.around.count() as u32, PART as u32, 4).next_multiple_of(2);
+    // An odd number of directions would have a horizontal one. The search for ellipses on curved ground takes as long with few.
+    let directions = match job.curvature {
+        None => part(job.around.count() as u32, PART as u32, 4).next_multiple_of(2),
+        Some(_) => job.around.count() as u32,
+    };
     let around = request::directions(args, directions)?;
     let scatter = job.scatter.map(|s| Scatter { paths: part(s.paths, PART as u32, 8), ..s });
     let mut small = Job {
@@ -153,6 +173,19 @@ fn fewer(job: &Job) -> Angles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Compilation of 2 s, and 3 s for a work of 6: a work of 60 takes 32 s, and 50 s by proportion alone.
+    #[test]
+    #[test]
+    fn what_does_not_grow_with_the_work_is_counted_once() {
+        let of = |work, seconds| Stage { seconds, ..Stage::new("stage", work, "") };
+        assert_eq!(scaled(60.0, &of(6.0, 5.0), None), 50.0);
+        assert_eq!(scaled(60.0, &of(6.0, 5.0), Some(&of(2.0, 3.0))), 32.0);
+        // Noise: the smaller one took longer, or has as much work.
+        assert_eq!(scaled(60.0, &of(6.0, 5.0), Some(&of(2.0, 6.0))), 5.0);
+        assert_eq!(scaled(1.0, &of(1.0, 5.0), Some(&of(1.0, 6.0))), 5.0);
+        assert_eq!(scaled(60.0, &of(0.0, 5.0), None), 0.0);
+    }
 
     #[test]
     fn a_failed_trial_gets_a_note_and_a_lost_device_ends_the_bake() {

@@ -10,7 +10,7 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 use ridgelight_bake::{Angles, HorizonSums};
 
-use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
+use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table, stage};
 use super::map::Wanted;
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
@@ -95,9 +95,13 @@ impl<'a> Job<'a> {
             match kind.source {
                 Source::Horizons | Source::Sums(_) => {}
                 Source::SkyView => all.push(Stage::new(name, horizons, unit)),
-                Source::Directions(_) => {
+                Source::Directions(of) => {
                     let rays = texels * self.around.count() as f64;
                     all.push(Stage::new(name, rays, "texels x directions"));
+                    if of.needs_sphere {
+                        // As many probes for each field.
+                        all.push(Stage::new(format!("{name}: {}", stage::PROBES), 1.0, "fields"));
+                    }
                 }
                 Source::Light(of) => {
                     let own = (of.stages)(self, kind.is_table() && has_table)?;

@@ -177,6 +177,8 @@ pub struct OfDirections {
 
 /// The names of stages that several kinds have.
 pub mod stage {
+    /// What a curved base surface changes.
+    pub const PROBES: &str = "probes of the base surface";
     pub const DIRECT: &str = "direct light";
     pub const POINTS: &str = "visible points";
     pub const SCATTERED: &str = "scattered light";

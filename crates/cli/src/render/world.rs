@@ -12,28 +12,23 @@ use crate::setup;
 
 /// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
 /// system.
-pub fn write(
-    picture: &Path,
-    input: &Input,
-    georeference: Option<&Georeference>,
-    quiet: bool,
-) -> Result<()> {
+pub fn write(picture: &Path, input: &Input, georeference: Option<&Georeference>) -> Result<()> {
     let path = picture.with_extension("pgw");
     match georeference {
         Some(georeference) => files::write_text(&path, &georeference.world_file()),
         None => {
             let why = format!("{} states no position", input.first().display());
-            note_stale(picture, &why, quiet);
+            warn_of_stale(picture, &why);
             Ok(())
         }
     }
 }
 
-/// A note where a world file of an earlier picture stands beside one that has none.
-pub fn note_stale(picture: &Path, why: &str, quiet: bool) {
+/// A warning where a world file of an earlier picture stands beside one that has none.
+pub fn warn_of_stale(picture: &Path, why: &str) {
     let path = picture.with_extension("pgw");
-    if path.exists() && !quiet {
-        setup::note(&format!("{}: not of this picture, because {why}", path.display()));
+    if path.exists() {
+        setup::warning(&format!("{}: not of this picture, because {why}", path.display()));
     }
 }
 

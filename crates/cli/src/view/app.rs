@@ -30,7 +30,7 @@ use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
 use crate::setup::tuned;
 use compare::Compare;
-use preview::Preview;
+pub use preview::Preview;
 pub use saving::save_pixels;
 
 /// Interval between attempts of a window that shows nothing.
@@ -115,7 +115,7 @@ impl<'a> App<'a> {
         args: &'a ViewArgs,
         state: State,
         steps: Option<VecDeque<Step>>,
-        Opened { window, inner, mut screen, gui }: Opened,
+        (Opened { window, inner, mut screen, gui }, preview): (Opened, Preview),
     ) -> Self {
         let limits = tuned::limits(screen.gpu().report(), args.global.memory_budget);
         let shown = OpenWindow {
@@ -127,7 +127,7 @@ impl<'a> App<'a> {
             has_fallen_back: false,
             gui,
             places: Vec::new(),
-            preview: Preview::new(limits.is_cpu),
+            preview,
             has_coarse_mesh: false,
             camera: None,
             turned: None,

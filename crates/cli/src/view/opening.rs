@@ -18,7 +18,7 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::{Window, WindowId};
 
-use super::app::{App, save_pixels};
+use super::app::{App, Preview, save_pixels};
 use super::gui::{Gui, INK};
 use super::script::Step;
 use super::state::State;
@@ -50,6 +50,8 @@ pub struct Opening<'a, 'scope> {
     reading: Option<Reading<'scope>>,
     began: Instant,
     opened: Option<Opened>,
+    /// What has been read, while a thread makes the grids of the first preview.
+    read: Option<(State, Preview)>,
     app: Option<App<'a>>,
     error: Option<Error>,
 }
@@ -60,8 +62,9 @@ impl<'a, 'scope> Opening<'a, 'scope> {
         steps: Option<VecDeque<Step>>,
         reading: Reading<'scope>,
     ) -> Self {
-        let (opened, app, error) = (None, None, None);
-        Self { args, steps, reading: Some(reading), began: Instant::now(), opened, app, error }
+        let (opened, read, app, error) = (None, None, None, None);
+        let began = Instant::now();
+        Self { args, steps, reading: Some(reading), began, opened, read, app, error }
     }
 
     /// The result of the run. A window that is closed while the field is read ends the program.
@@ -118,20 +121,31 @@ impl<'a, 'scope> Opening<'a, 'scope> {
             steps.pop_front();
             return Ok(false);
         }
-        let is_open = self.opened.is_some();
-        let Some(reading) = self.reading.take_if(|reading| is_open && reading.is_finished()) else {
-            if let (None, Some(opened)) = (&self.steps, &mut self.opened)
-                && self.began.elapsed() > PATIENCE
-            {
-                opened.show(&self.args.input.path, false)?;
+        if let Some(opened) = &mut self.opened
+            && let Some(reading) = self.reading.take_if(|reading| reading.is_finished())
+        {
+            let (scene, quality) = joined(reading)?;
+            let state = State::new(self.args, scene, quality);
+            let mut preview = Preview::new(opened.screen.gpu().report().limits.is_cpu);
+            // A script begins without previews.
+            if self.steps.is_none() {
+                preview.prepare(&state);
             }
-            return Ok(false);
-        };
-        let (scene, quality) = joined(reading)?;
-        let Some(opened) = self.opened.take() else { return Ok(false) };
-        let state = State::new(self.args, scene, quality);
-        self.app = Some(App::new(self.args, state, self.steps.take(), opened));
-        Ok(true)
+            self.read = Some((state, preview));
+        }
+        let is_ready = |read: &mut (State, Preview)| !read.1.makes_grids();
+        if let Some((state, preview)) = self.read.take_if(is_ready)
+            && let Some(opened) = self.opened.take()
+        {
+            self.app = Some(App::new(self.args, state, self.steps.take(), (opened, preview)));
+            return Ok(true);
+        }
+        if let (None, Some(opened)) = (&self.steps, &mut self.opened)
+            && self.began.elapsed() > PATIENCE
+        {
+            opened.show(&self.args.input.path, false)?;
+        }
+        Ok(false)
     }
 }
 

@@ -26,6 +26,7 @@ fn codes(path: &Path) -> (png::ColorType, Vec<u8>) {
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(reader.info().source_gamma, None, "viewers would change the codes");
     (reader.info().color_type, bytes)
 }
 
@@ -130,6 +131,28 @@ fn hillshade_has_no_note_on_the_curvature() {
         let run = folder.run_without_driver(&words);
         assert_eq!(run.status, Some(status), "{words:?}: {}", run.err);
         assert_eq!(run.notes.contains(said), is_noted, "{words:?}: {}", run.notes);
+    }
+}
+
+/// What `render` reads of a sun and a map does not gets a note.
+#[test]
+fn maps_have_a_note_on_what_they_do_not_use_of_a_sun() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, |row, _| row as f32);
+    for (map, sun, note) in [
+        ("hillshade", "315,45", ""),
+        ("hillshade", "315,45,3", "note: --sun: its diameter changes nothing here"),
+        ("hillshade", "315,45,3,2", "note: --sun: its diameter and irradiance change nothing here"),
+        ("shadow", "315,45,3", ""),
+        ("shadow", "315,45,3,2", "note: --sun: its irradiance changes nothing here"),
+    ] {
+        let words = [map, "field.npy", "--cell", "1", "-o", "o.npy", "--sun", sun];
+        let said = |more: &[&str]| {
+            let err = folder.run_without_driver(&[&words[..], more].concat()).err;
+            // Without a driver a map of shadows then fails.
+            err.lines().filter(|line| line.contains("--sun: its")).collect::<String>()
+        };
+        assert_eq!([said(&[]), said(&["-q"])], [note, ""], "{words:?}");
     }
 }
 

@@ -201,7 +201,12 @@ fn gpu_a_sun_that_has_set_is_night() {
         .map(|name| ridgelight_io::read_planes(&folder.path(name)).unwrap().planes);
     assert!(dusk == sky);
     let run = folder.run_str(&format!("render {input} --sun 10,-95 -o wrong.exr"));
-    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert_eq!((run.status, run.notes.as_str()), (Some(2), ""), "{}", run.err);
+    // A sun at the horizontal lights nearly nothing.
+    for (flags, is_black) in [("--sun 100,0,0", true), ("--sun 100,30", false)] {
+        let run = succeeded(&folder, &format!("render {input} {flags} -o low.png"));
+        assert_eq!(run.notes.contains("% of the picture is lit"), is_black, "{}", run.notes);
+    }
     // A picture of the night is dark. 0.8 is code 231 of sRGB, 0.08 code 80.
     for (flags, brightest) in [("--sun 10,-5", 80), ("--sun 10,-5 --sky 0.5", 231)] {
         succeeded(&folder, &format!("render {input} {flags} --tint none -o night.png --quiet"));

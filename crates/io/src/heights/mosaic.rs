@@ -1,6 +1,6 @@
 //! Several grids as one, and parts of grids, by their positions.
 
-use super::{Raster, StoredHeights};
+use super::{Cell, Raster, StoredHeights};
 use crate::georeference::Georeference;
 use crate::open;
 use ridgelight::{Error, Result};
@@ -41,6 +41,9 @@ pub(super) fn joined(
             return Err(Error::file(path, "coordinate reference system", name(own), expected));
         }
         corners.push(whole_cells(path, raster, own, (&first, &at))?);
+    }
+    if matches!(cell, Cell::Degrees { .. }) {
+        cross_antimeridian(&tiles, &mut corners, at.cell[0]);
     }
     let ends = tiles.iter().zip(&corners).map(|(Tile { raster, .. }, corner)| {
         [corner[0] + raster.rows as i64, corner[1] + raster.cols as i64]
@@ -141,7 +144,7 @@ fn mixed_units(units: &[(String, Option<f64>)]) -> Option<String> {
     (!unknown.is_empty()).then(|| {
         format!(
             "in {}: no known unit of height, so heights are read as metres; those of {scaled} are in units of \
-             {unit} m. `z_scale` applies to all files. State the unit in the file, as with \
+             {unit} m; as `z_scale` applies to all files, state the unit in the file, as with \
              `gdal_edit.py -units ft FILE`",
             unknown.join(", ")
         )
@@ -180,6 +183,26 @@ fn whole_cells(
         return Err(Error::file(path, "position", found, "a shift of whole cells"));
     }
     Ok(shift.map(|cells| cells.round() as i64))
+}
+
+/// Moves tiles by a whole circle where they are narrower together, as two on either side of longitude 180 are.
+fn cross_antimeridian(tiles: &[Tile], corners: &mut [[i64; 2]], cell: f64) {
+    let circle = (360.0 / cell).round();
+    if (circle * cell - 360.0).abs() > SHIFT * cell {
+        return;
+    }
+    let width = |corners: &[[i64; 2]]| {
+        let ends = tiles.iter().zip(corners).map(|(tile, at)| at[1] + tile.raster.cols as i64);
+        let begin = corners.iter().map(|at| at[1]).min();
+        ends.max().zip(begin).map(|(end, begin)| end - begin)
+    };
+    let mut moved = corners.to_vec();
+    for [_, col] in &mut moved {
+        *col -= ((*col as f64 / circle).round() * circle) as i64;
+    }
+    if width(&moved) < width(corners) {
+        corners.copy_from_slice(&moved);
+    }
 }
 
 /// The position some rows and columns from `at`.

@@ -102,9 +102,21 @@ pub(super) fn scale_warning(
         let [read, are] = [cell_m, [cell_m[0] * across, cell_m[1] * along]].map(|cell| cell.map(text));
         format!(
             "metres of EPSG:{code} are not metres on the ground: cells are read as {} x {} m, and are {} x {} m at the \
-             centre. `cell_m` {},{} takes those",
+             centre, which `cell_m` {},{} states",
             read[0], read[1], are[0], are[1], are[0], are[1]
         )
+    })
+}
+
+/// A projected system whose code is not known here: neither its north nor its scale is.
+pub(super) fn unknown_warning(at: &Georeference) -> Option<String> {
+    let is_projected = at.keys.entries.iter().any(|e| [e[0], e[3]] == [1024, 1]);
+    let is_known =
+        at.keys.is_web_mercator() || projected_code(&at.keys).and_then(systems).is_some();
+    (is_projected && !is_known).then(|| {
+        "the projection has no known EPSG code: grid north is taken as true north, and its metres as metres on the ground; to \
+         correct both, reproject with `gdalwarp -t_srs` to a system with a code, such as UTM"
+            .to_owned()
     })
 }
 

@@ -139,6 +139,28 @@ impl Raster {
             let text = "heights are 8-bit integers, as in a picture: slopes have steps";
             self.warnings.push(text.to_owned());
         }
+        if self.unit_m.is_none() && !options.is_unit_known {
+            self.warnings.extend(self.likely_codes());
+        }
+    }
+
+    /// A warning of heights in metres that are likely to be the codes of a picture.
+    fn likely_codes(&self) -> Option<String> {
+        let is_void = |i: usize| self.voids.as_ref().is_some_and(|voids| voids[i]);
+        let heights =
+            || self.values.iter().enumerate().filter(|(i, _)| !is_void(*i)).map(|(_, v)| *v);
+        let (low, high) =
+            heights().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+        let what =
+            if !self.is_8_bit && [low, high] == [0.0, 255.0] && heights().all(|v| v.fract() == 0.0)
+            {
+                "heights are the whole numbers 0 to 255, as in a picture".to_owned()
+            } else if high - low > EARTH_RELIEF_M && high.abs().max(low.abs()) < HUGE {
+                format!("heights span {:.0} m, more than the Earth's relief", high - low)
+            } else {
+                return None;
+            };
+        Some(format!("{what}, and no unit is stated; `z_scale` gives the metres of a step"))
     }
 
     /// Warnings of heights with a no-data value of the file that `nodata` replaces.
@@ -201,12 +223,24 @@ impl Raster {
                 "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`"
                     .to_owned(),
             ),
+            Cell::Metres(_) => {
+                let unknown = self.georeference.as_ref().filter(|at| at.keys.entries.is_empty());
+                if unknown
+                    .is_some_and(|at| could_be_degrees(at.extent(self.rows, self.cols), at.cell))
+                {
+                    warnings.push(
+                        "no reference system: cells are read as metres, but the corners could be longitudes and latitudes; \
+                         if they are, `gdal_translate -a_srs EPSG:4326 in out.tif` states it"
+                            .to_owned(),
+                    );
+                }
+            }
             _ => {}
         }
         let error = self.cell.width_error(self.rows);
         if let Some(error) = error.filter(|error| *error > WIDTH_NOTED) {
             warnings.push(format!(
-                "all rows take the cell width of the centre: in the first or the last row the error is {:.0} %. To avoid it, \
+                "all rows take the cell width of the centre: in the first or the last row the error is {:.0} %; to avoid it, \
                  reproject with `gdalwarp -t_srs` to a local system such as UTM",
                 100.0 * error
             ));
@@ -215,10 +249,14 @@ impl Raster {
     }
 }
 
+/// From the deepest sea to the highest summit, metres.
+const EARTH_RELIEF_M: f64 = 19_800.0;
+
+/// No height is so large. Floats near the largest mark voids, often written with few digits.
+const HUGE: f64 = 1e30;
+
 /// Whether a value is a file's value for no data. `single`: values are f32, or are compared as such.
 pub(crate) fn is_nodata(value: f64, nodata: f64, single: bool) -> bool {
-    // Floats near the largest, often written with few digits. No height is so large.
-    const HUGE: f64 = 1e30;
     value == nodata
         || value.is_nan() && nodata.is_nan()
         || single && nodata.is_finite() && value as f32 == nodata as f32
@@ -318,6 +356,14 @@ pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
     [east, north]
 }
 
+/// Whether the corners of coarse cells without a reference system, which are read as metres, could be longitudes and latitudes. A
+/// grid that begins at (0, 0) has no position.
+fn could_be_degrees([west, south, east, north]: [f64; 4], cell: [f64; 2]) -> bool {
+    let is_on_earth = [west, east].iter().all(|x| x.abs() <= 360.0)
+        && [south, north].iter().all(|y| y.abs() <= 90.0);
+    cell.iter().all(|c| (0.1..=5.0).contains(c)) && is_on_earth && [west, south] != [0.0; 2]
+}
+
 /// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360, ±90) *and* either the cell is
 /// below 0.1, or the grid goes round the Earth. A projected grid with so small a cell at the origin of its projection would be
 /// mistaken for degrees; the caller can override the cell size.
@@ -411,6 +457,41 @@ mod tests {
         };
         assert_eq!([warned(None, None), warned(Some(-1.0), None)], [true; 2]);
         assert_eq!([warned(Some(-9999.0), None), warned(None, Some(-1.0))], [false; 2]);
+    }
+
+    /// Values of a whole code range, or of more than the Earth has, without a unit; not where the user or the file states one.
+    #[test]
+    fn likely_codes_get_a_warning() {
+        let warned = |values: &[f64], unit_m: Option<f64>, is_unit_known: bool| {
+            let mut raster = Raster { unit_m, ..Raster::bare(1, values.len(), values.to_vec()) };
+            raster.interpret(&HeightOptions { is_unit_known, ..HeightOptions::default() });
+            raster.warnings.iter().any(|text| text.contains("`z_scale` gives the metres of a step"))
+        };
+        for (values, is_likely) in [
+            (&[0.0, 17.0, 255.0][..], true),
+            (&[0.0, 17.5, 255.0], false),
+            (&[1.0, 17.0, 255.0], false),
+            (&[0.0, 65_535.0], true),
+            (&[-10_900.0, 8_849.0], false),
+            (&[0.0, -3e38], false),
+        ] {
+            assert_eq!(warned(values, None, false), is_likely, "{values:?}");
+            assert!(!warned(values, Some(1.0), false) && !warned(values, None, true), "{values:?}");
+        }
+    }
+
+    /// Corners on the Earth and cells of a tenth of a degree or more; not at the origin, and not of fine cells.
+    #[test]
+    fn coarse_degrees_get_a_warning() {
+        for (extent, cell, could_be) in [
+            ([7.0, 46.0, 9.5, 48.5], [0.25; 2], true),
+            ([0.0, 0.0, 9.5, 48.5], [0.25; 2], false),
+            ([7.0, 46.0, 9.5, 95.0], [0.25; 2], false),
+            ([500.0, 46.0, 510.0, 48.5], [1.0; 2], false),
+            ([7.0, 46.0, 47.0, 86.0], [10.0; 2], false),
+        ] {
+            assert_eq!(could_be_degrees(extent, cell), could_be, "{extent:?}");
+        }
     }
 
     #[test]

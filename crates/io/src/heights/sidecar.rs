@@ -84,7 +84,7 @@ impl Sidecar {
         if let Some(name) = srs.filter(|_| at.as_ref().is_none_or(is_lost)) {
             warnings.push(format!(
                 "the coordinate reference system in {name} is not read, and neither is its position: cells are in metres unless the \
-                 file's own coordinates fit degrees. Use `gdalwarp -t_srs` with an EPSG code to write a GeoTIFF with both"
+                 file's own coordinates fit degrees; use `gdalwarp -t_srs` with an EPSG code to write a GeoTIFF with both"
             ));
         }
         let Some(mut at) = at else {

@@ -365,7 +365,7 @@ fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
         return None;
     };
     Some(format!(
-        "the {what} of this file is not read: all its heights count. `gdalwarp -dstnodata -9999` turns masked \
+        "the {what} of this file is not read: all its heights count, but `gdalwarp -dstnodata -9999` turns masked \
          heights into voids"
     ))
 }

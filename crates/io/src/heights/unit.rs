@@ -48,7 +48,7 @@ pub(super) fn of_cells(cell_m: f64) -> String {
         format!("units of {cell_m} m")
     };
     format!(
-        "heights are read as metres; the cells are in {cells}. If the heights are too, use `z_scale {cell_m}`; if they are metres, `z_scale 1`"
+        "heights are read as metres, but the cells are in {cells}: if the heights are too, use `z_scale {cell_m}`; if they are metres, `z_scale 1`"
     )
 }
 

@@ -6,14 +6,18 @@ use ridgelight::{Error, Result};
 use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// The name and the bytes of a packed file, `None` where the name is not that of one.
+/// The name and the bytes of a packed file, `None` where the name is not that of one. Messages name the packed file; the last part
+/// of the name sets the format, and an .hgt's position.
 ///
 /// # Errors
 /// Broken or huge contents; an archive with no height field, or more than one.
 pub(super) fn unpacked(path: &Path, bytes: &[u8]) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     match extension.as_deref() {
-        Some("gz") => Ok(Some((path.with_extension(""), gunzipped(path, bytes)?))),
+        Some("gz") => {
+            let inner = path.file_stem().unwrap_or_default();
+            Ok(Some((path.join(inner), gunzipped(path, bytes)?)))
+        }
         Some("zip") => unzipped(path, bytes).map(Some),
         _ => Ok(None),
     }
@@ -44,7 +48,6 @@ fn unzipped(path: &Path, bytes: &[u8]) -> Result<(PathBuf, Vec<u8>)> {
         return Err(Error::file(path, "archive", found, "one, as N44W072.hgt in N44W072.hgt.zip"));
     };
     let contents = all(path, archive.by_name(name).map_err(broken)?, "a whole ZIP archive")?;
-    // Messages name the archive; the last part sets the format, and an .hgt's position.
     let inner = Path::new(name).file_name().unwrap_or_default();
     Ok((path.join(inner), contents))
 }

@@ -447,7 +447,9 @@ fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> 
         Goal::MaxError(_) => t.measured.at_most,
         Goal::MaxCost(_) => t.ns,
     };
-    let Some(nearest) = trials.iter().min_by(|a, b| miss(a).total_cmp(&miss(b))) else {
+    // One that reached the goal in a search, and not in the frame that confirms, is none to report.
+    let missed = trials.iter().filter(|trial| !goal.is_reached(trial));
+    let Some(nearest) = missed.min_by(|a, b| miss(a).total_cmp(&miss(b))) else {
         return Error::Limit {
             what: "choosing settings".into(),
             needs: "settings that fit the device".into(),

@@ -239,19 +239,37 @@ impl Preview {
         Ok(())
     }
 
-    /// Makes the levels if there are none. If the present ones are too slow for a drag, a thread makes others, and the first input after
-    /// it finishes uses them. Edited and animated heights, and sides that a script gives, wait for new levels.
+    /// Starts a thread that makes the grids of the first preview, if there will be one.
+    pub fn prepare(&mut self, state: &State) {
+        if self.is_needed(state)
+            && let Some(sides) = self.other_grids(state, DRAGGED)
+        {
+            self.start_grids(state, sides);
+        }
+    }
+
+    /// Whether a thread makes grids.
+    pub fn makes_grids(&self) -> bool {
+        self.next_grids.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// Makes the levels if there are none and no thread has made them. If the present ones are too slow for a drag, a thread makes
+    /// others, and the first input after it finishes uses them. Edited and animated heights, and sides that a script gives, wait for
+    /// new levels.
     fn fit(&mut self, screen: &mut Screen, state: &State, is_edited: bool) -> Result<()> {
         let Some(sides) = self.other_grids(state, DRAGGED) else { return Ok(()) };
-        let is_animated = state.is_moving() || is_edited;
-        if self.levels.is_none() || self.fixed.is_some() || is_animated {
-            self.end(screen)?;
+        let waits = self.fixed.is_some() || state.is_moving() || is_edited;
+        if waits {
             self.next_grids = None;
-            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
-        } else if let Some(grounds) = finished(&mut self.next_grids) {
+        }
+        if let Some(grounds) = finished(&mut self.next_grids) {
             let grounds = grounds?;
             self.end(screen)?;
             self.levels = Some(levels_of(grounds));
+        } else if waits || self.levels.is_none() {
+            self.end(screen)?;
+            self.next_grids = None;
+            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
         } else {
             self.start_grids(state, sides);
         }

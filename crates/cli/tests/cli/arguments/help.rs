@@ -133,8 +133,9 @@ fn help_gives_units_and_defaults() {
                 .find(|f| f.split([' ', '\n']).next() == flag.strip_prefix("--"))
                 .unwrap_or_else(|| panic!("{command} --help has no {flag}"));
             for said in *says {
-                // Maps of light are scattered by default.
+                // Maps of light are scattered by default, some pictures have a bounce.
                 let said = match (command, *flag, *said) {
+                    ("render", "--bounces", "[default: 0]") => "[default: 0, or 1 in a .png]",
                     ("bake", "--bounces", "[default: 0]") => "[default: 3]",
                     _ => *said,
                 };

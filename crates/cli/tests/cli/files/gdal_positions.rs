@@ -54,6 +54,56 @@ fn gdal_and_info_state_the_same_reference_system_and_extent() {
     }
 }
 
+/// A field across longitude 180, whose files GDAL places at both ends of the map.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_tiles_beside_the_antimeridian_are_one_field() {
+    let folder = Folder::new();
+    folder.write("whole.asc", grid([60, 50], [0.0, 0.0], 1.0, 1).as_bytes());
+    let at = "gdal_translate -q -ot Int16 -a_srs EPSG:4326";
+    tool(&folder, &format!("{at} -a_ullr 179.5 -16 180.5 -17 whole.asc whole.tif"));
+    tool(&folder, &format!("{at} -srcwin 0 0 30 50 -a_ullr 179.5 -16 180 -17 whole.asc west.tif"));
+    tool(
+        &folder,
+        &format!("{at} -srcwin 30 0 30 50 -a_ullr -180 -16 -179.5 -17 whole.asc east.tif"),
+    );
+    let [one, two] = [&["whole.tif"][..], &["west.tif", "east.tif"]].map(|names| {
+        let paths: Vec<_> = names.iter().map(|name| folder.path(name)).collect();
+        ridgelight_io::read_mosaic(&paths, &HeightOptions::default()).unwrap()
+    });
+    assert_eq!(one.field.heights_m(), two.field.heights_m());
+    assert_eq!(one.field.cell_m(), two.field.cell_m());
+    assert_eq!(one.georeference.unwrap().corner, two.georeference.unwrap().corner);
+    // In the other order the same field, its west a circle farther west.
+    let paths = ["east.tif", "west.tif"].map(|name| folder.path(name));
+    let turned = ridgelight_io::read_mosaic(&paths, &HeightOptions::default()).unwrap();
+    assert_eq!(turned.field.heights_m(), two.field.heights_m());
+    assert_eq!(turned.georeference.unwrap().corner, [-180.5, -16.0]);
+}
+
+/// Systems without an EPSG code, as GDAL writes them: the file says so, and no angle or scale is stated.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_systems_without_a_code_get_a_warning() {
+    let folder = Folder::new();
+    folder.write("plain.asc", grid([8, 6], [-1_900_000.0, 1_500_000.0], 30.0, 1).as_bytes());
+    for (srs, is_warned) in [
+        ("ESRI:102003", true),
+        ("+proj=merc +datum=WGS84", true),
+        ("EPSG:5070", false),
+        ("EPSG:3857", false),
+    ] {
+        let output = Command::new("gdal_translate")
+            .current_dir(folder.path("."))
+            .args(["-q", "-a_srs", srs, "plain.asc", "at.tif"])
+            .status();
+        assert!(output.unwrap().success(), "{srs}");
+        let read = read_field(&folder.path("at.tif"), &HeightOptions::default()).unwrap();
+        let warned = read.warnings.iter().any(|text| text.contains("no known EPSG code"));
+        assert_eq!(warned, is_warned, "{srs}: {:?}", read.warnings);
+    }
+}
+
 /// GDAL's mosaic of the same files, and of a box of it: same values, voids and positions.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

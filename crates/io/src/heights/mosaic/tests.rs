@@ -146,7 +146,7 @@ fn units_that_only_some_files_state_are_warned_about() {
     let warnings = |units, bbox| of(units, bbox, false);
     let mixed = [None, Some(0.3048), None];
     let [warning] = &warnings(mixed, None)[..] else { panic!("one warning") };
-    let begin = "in a, c: no known unit of height, so heights are read as metres; those of b are in units of 0.3048 m.";
+    let begin = "in a, c: no known unit of height, so heights are read as metres; those of b are in units of 0.3048 m;";
     assert!(warning.starts_with(begin), "{warning}");
     // A box without the file in feet, and one without the others.
     assert!(warnings(mixed, Some([5001.0, 8921.0, 5009.0, 8999.0])).is_empty());
