@@ -176,7 +176,6 @@ mod tests {
 
     /// Compilation of 2 s, and 3 s for a work of 6: a work of 60 takes 32 s, and 50 s by proportion alone.
     #[test]
-    #[test]
     fn what_does_not_grow_with_the_work_is_counted_once() {
         let of = |work, seconds| Stage { seconds, ..Stage::new("stage", work, "") };
         assert_eq!(scaled(60.0, &of(6.0, 5.0), None), 50.0);

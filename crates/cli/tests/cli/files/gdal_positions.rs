@@ -81,7 +81,7 @@ fn gdal_tiles_beside_the_antimeridian_are_one_field() {
     assert_eq!(turned.georeference.unwrap().corner, [-180.5, -16.0]);
 }
 
-/// Systems without an EPSG code, as GDAL writes them: the file says so, and no angle or scale is stated.
+/// Systems without an EPSG code, as GDAL writes them, get a warning instead of an angle and a scale.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_systems_without_a_code_get_a_warning() {
