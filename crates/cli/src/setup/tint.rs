@@ -189,6 +189,41 @@ mod tests {
         }
     }
 
+    /// The same colours as people without one kind of cone see them (Machado, Oliveira & Fernandes 2009, table 1, severity 1; of
+    /// linear RGB): lightness runs in one direction, each step above a just noticeable difference of CIELAB (2.3 of 100; Mahy et al. 1994).
+    #[test]
+    fn palettes_keep_their_order_without_a_kind_of_cone() {
+        const WITHOUT: [[[f64; 3]; 3]; 3] = [
+            [
+                [0.152286, 1.052583, -0.204868],
+                [0.114503, 0.786281, 0.099216],
+                [-0.003882, -0.048116, 1.051998],
+            ],
+            [
+                [0.367322, 0.860646, -0.227968],
+                [0.280085, 0.672501, 0.047413],
+                [-0.011820, 0.042940, 0.968881],
+            ],
+            [
+                [1.255528, -0.076749, -0.178779],
+                [-0.078411, 0.930809, 0.147602],
+                [0.004733, 0.691367, 0.303900],
+            ],
+        ];
+        for (palette, cones) in
+            [&LAND, &ELEVATION, &SLOPE].into_iter().flat_map(|p| WITHOUT.map(|w| (p, w)))
+        {
+            let seen = |share: f64| {
+                let rgb = palette.at(share).map(f64::from);
+                let row = |row: [f64; 3]| row.iter().zip(rgb).map(|(a, b)| a * b).sum::<f64>();
+                lightness(cones.map(|of| row(of).clamp(0.0, 1.0) as f32))
+            };
+            let all: Vec<f64> = (0..=10).map(|i| seen(f64::from(i) / 10.0)).collect();
+            let direction = (all[10] - all[0]).signum();
+            assert!(all.windows(2).all(|pair| direction * (pair[1] - pair[0]) > 0.023), "{all:?}");
+        }
+    }
+
     #[test]
     fn white_and_black_are_white_and_black() {
         for (lightness, want) in [(1.0, 1.0), (0.0, 0.0)] {
