@@ -275,6 +275,45 @@ fn defaults() -> Result<String> {
     Ok(format!("{}\n\n*{device}{made}*\n", table.trim_end()))
 }
 
+/// The frontiers of the kept walks of `ridgelight trade`: rows whose error is at most this share of that of the row before.
+fn trade() -> Result<String> {
+    const SHOWN: f64 = 0.9;
+    const WALKS: [(&str, &str); 3] = [
+        (
+            "mountain_sky",
+            "Mt Washington, 256², under a uniform sky; all light is compared with brute force",
+        ),
+        (
+            "mountain_sun",
+            "Mt Rainier, under a sun 0.53° wide and 25° high; compared with a path-traced reference",
+        ),
+        ("moss_windows", "Moss under the windows of a room; compared with a path-traced reference"),
+    ];
+    let mut out = String::new();
+    for (walk, scene) in WALKS {
+        let name = format!("trade_{walk}.txt");
+        let (body, made) = result(&name)?;
+        let mut least = f64::INFINITY;
+        let row = |line: &str| {
+            let mut words = line.split_whitespace();
+            let [time, unit] = [words.next()?, words.next()?];
+            let rest = words.collect::<Vec<_>>().join(" ");
+            let (error, settings) = rest.split_once(" % ")?;
+            let value: f64 = error.trim_start_matches("≤ ").parse().ok()?;
+            let is_shown = unit == "ms" && value < SHOWN * least;
+            least = if is_shown { value } else { least };
+            let settings = settings.trim_end_matches(" <- recommended");
+            is_shown.then(|| format!("| {time} ms | {error} % | `{settings}` |\n"))
+        };
+        let rows: String = body.lines().filter_map(row).collect();
+        found(&name, (!rows.is_empty()).then_some(()), "the frontier of ridgelight trade")?;
+        out += &format!(
+            "{scene} ([all rows](../benches/results/trade_{walk}.csv)):\n\n| time | error | settings |\n|---|---|---|\n{rows}\n*llvmpipe{made}*\n\n"
+        );
+    }
+    Ok(out.trim_end().to_owned() + "\n")
+}
+
 /// Errors of Fourier series of horizons, as `cargo measure fourier` printed it.
 fn fourier() -> Result<String> {
     let (body, made) = result("fourier.txt")?;
@@ -454,7 +493,7 @@ const PAGES: [(&str, &[Section]); 9] = [
         "docs/accuracy.md",
         &[("accuracy", accuracy), ("defaults", defaults), ("suns", suns), ("bounces", bounces)],
     ),
-    ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
+    ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals), ("trade", trade)]),
     ("docs/measured/performance.md", &[("performance", performance::performance)]),
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];
