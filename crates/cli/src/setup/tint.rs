@@ -213,12 +213,12 @@ mod tests {
         for (palette, cones) in
             [&LAND, &ELEVATION, &SLOPE].into_iter().flat_map(|p| WITHOUT.map(|w| (p, w)))
         {
-            let seen = |share: f64| {
+            let without = |share: f64| {
                 let rgb = palette.at(share).map(f64::from);
                 let row = |row: [f64; 3]| row.iter().zip(rgb).map(|(a, b)| a * b).sum::<f64>();
                 lightness(cones.map(|of| row(of).clamp(0.0, 1.0) as f32))
             };
-            let all: Vec<f64> = (0..=10).map(|i| seen(f64::from(i) / 10.0)).collect();
+            let all: Vec<f64> = (0..=10).map(|i| without(f64::from(i) / 10.0)).collect();
             let direction = (all[10] - all[0]).signum();
             assert!(all.windows(2).all(|pair| direction * (pair[1] - pair[0]) > 0.023), "{all:?}");
         }
