@@ -81,9 +81,9 @@ fn the_unit_of_the_band_converts_heights() {
 /// Heights without a unit over cells in feet: the warning names both units, unless the caller knows that of the heights.
 #[test]
 fn a_known_unit_of_heights_needs_no_warning() {
-    let us = "heights are read as metres; the cells are in US survey feet. If the heights are too, use \
+    let us = "heights are read as metres, but the cells are in US survey feet: if the heights are too, use \
               `z_scale 0.3048006096012192`; if they are metres, `z_scale 1`";
-    let feet = "heights are read as metres; the cells are in feet. If the heights are too, use \
+    let feet = "heights are read as metres, but the cells are in feet: if the heights are too, use \
                 `z_scale 0.3048`; if they are metres, `z_scale 1`";
     for (unit, said) in [(9003, us), (9002, feet)] {
         let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, unit];
@@ -121,7 +121,7 @@ fn cells_in_the_unit_of_a_prj_get_a_note() {
     let stated = with(&[SCALE, TIE, (METADATA, Tag::Text(&metres))]);
     std::fs::write(folder.path().join("stated.tif"), stated).unwrap();
     let note = "cells are in units of 0.3048 m and become metres";
-    let warning = "heights are read as metres; the cells are in feet. If the heights are too, use \
+    let warning = "heights are read as metres, but the cells are in feet: if the heights are too, use \
                    `z_scale 0.3048`; if they are metres, `z_scale 1`";
     for (name, text, unit_m, is_open) in [
         ("a.asc", &metre, 1.0, true),

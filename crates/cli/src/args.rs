@@ -231,8 +231,8 @@ Examples:
     mut_arg("bounces", |arg| {
         let help = "Bounces of indirect light, 0 to 64 [default: 0, or 1 in a .png]";
         arg.hide_default_value(true).help(help).long_help(format!(
-            "{help}\n\nFewer leave hollows darker; more take time in proportion. A .png of the default light has one of 8 azimuths \
-             where that changes it."
+            "{help}\n\n0 is direct light. Fewer leave hollows darker; more take time in proportion. A .png with the default light gets \
+             one bounce in 8 azimuths if that changes the picture."
         ))
     })
 )]
@@ -286,7 +286,7 @@ pub struct RenderArgs {
 
 #[derive(Args)]
 #[command(mut_arg("json", |arg| {
-    arg.help("Write the description as JSON; without a file, print it instead of the text")
+    arg.help("Write the description as JSON to a file; without a file name, print it instead of the text")
         .num_args(0..=1)
         .default_missing_value("-")
         .hide_short_help(false)

@@ -173,8 +173,10 @@ fn compute(
                     let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
-                if of.needs_sphere {
+                if let Some(probe) = of.probe {
                     stages.begin(kinds::stage::PROBES);
+                    probe(job, files);
+                    stages.begin("");
                 }
                 (of.take)(job, &outputs, files)?;
             }

@@ -234,7 +234,7 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     };
     let words = light("sun").words(&lights).concat();
     let direction = words.split(',').take(2).collect::<Vec<_>>().join(",");
-    note_unused(&sun, false, args.map.global.quiet);
+    note_ignored("hillshade", &sun, false, args.map.global.quiet);
     let job = Job::new(&args.map, &args.map.surface, setup::of_neighbours)?;
     let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);
@@ -248,7 +248,7 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: run `shadow` once per sun"));
     };
-    note_unused(&sun, true, args.map.global.quiet);
+    note_ignored("shadow", &sun, true, args.map.global.quiet);
     if setup::border(&args.map.surface) == Border::Periodic {
         let expected = "plane or open: `shadow` does not support a periodic field";
         return Err(Error::setting("--border", "periodic", expected));
@@ -272,20 +272,20 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     job.write_all(&SHADOW_VALUES, planes, metadata, &times)
 }
 
-/// A note on what `render` uses of a sun and a map does not.
-fn note_unused(sun: &Sun, uses_diameter: bool, quiet: bool) {
+/// A note on values of a sun that a map ignores.
+fn note_ignored(command: &str, sun: &Sun, uses_diameter: bool, quiet: bool) {
     let mut plain = Lights::default();
     light("sun").add(&mut plain, "0,0").expect("a sun of ours");
     let Sun { diameter_rad, irradiance, .. } = plain.suns[0];
-    let diameter = !uses_diameter && sun.diameter_rad != diameter_rad;
-    let text = match (diameter, sun.irradiance != irradiance) {
+    let has_diameter = !uses_diameter && sun.diameter_rad != diameter_rad;
+    let what = match (has_diameter, sun.irradiance != irradiance) {
         (false, false) => return,
-        (true, false) => "diameter changes",
-        (false, true) => "irradiance changes",
-        (true, true) => "diameter and irradiance change",
+        (true, false) => "the diameter",
+        (false, true) => "the irradiance",
+        (true, true) => "the diameter and the irradiance",
     };
     if !quiet {
-        setup::note(&format!("--sun: its {text} nothing here"));
+        setup::note(&format!("--sun: {command} ignores {what}"));
     }
 }
 

@@ -6,8 +6,6 @@ pub mod camera;
 mod choices;
 pub mod world;
 
-use std::path::Path;
-
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::Tone;
@@ -195,15 +193,13 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
             let picture = &camera_pixels.radiance;
             let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around), white));
-            if !args.global.quiet {
-                note_black(&args.output, picture, Some(&around));
-            }
+            note_black(args, &scene, picture, Some(&around));
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
         if is_png {
-            world::warn_of_stale(&args.output, "it is a camera's");
+            world::warn_of_stale(&args.output, "this one is a camera view");
         }
     } else if !is_png {
         let georeference = georeference.as_ref();
@@ -219,9 +215,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
         let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids, white));
-        if !args.global.quiet {
-            note_black(&args.output, &picture, voids);
-        }
+        note_black(args, &scene, &picture, voids);
         shown = Some(exposure);
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
@@ -290,16 +284,22 @@ pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>, white: f64) -> 
     if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
 }
 
-/// A note on a picture that automatic exposure leaves black: less than a hundredth of it is lit.
-fn note_black(path: &Path, picture: &[[f32; 3]], left_out: Option<&[bool]>) {
+/// A note on a picture that is black because less than 1 % of it is lit.
+fn note_black(args: &RenderArgs, scene: &Scene, picture: &[[f32; 3]], left_out: Option<&[bool]>) {
+    let has_sky = scene.lights.sky.is_some() || scene.lights.environment.is_some();
+    if args.global.quiet || args.exposure.is_some() || has_sky {
+        return;
+    }
     let counts = |i: usize| !left_out.is_some_and(|v| v[i]);
     let all = (0..picture.len()).filter(|i| counts(*i)).count();
     let is_lit = |i: &usize| counts(*i) && picture[*i].iter().any(|v| *v > 0.0);
     let lit = (0..picture.len()).filter(is_lit).count();
     if (lit as f64) < (1.0 - EXPOSED_SHARE) * all as f64 {
         let share = 100.0 * lit as f64 / all as f64;
-        let path = path.display();
-        setup::note(&format!("{path}: {share:.2} % of the picture is lit; --sky lights the rest"));
+        let path = args.output.display();
+        setup::note(&format!(
+            "{path}: only {share:.2} % of the picture is lit; --sky lights the rest"
+        ));
     }
 }
 

@@ -324,7 +324,9 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
             cell_m
         }
     };
-    warnings.extend(raster.georeference.as_ref().and_then(projection::unknown_warning));
+    let has_cell = options.cell_m.is_some();
+    let unknown = |at| projection::unknown_warning(at, has_cell);
+    warnings.extend(raster.georeference.as_ref().and_then(unknown));
     let stored = raster.stored();
     let Raster { rows, cols, values, voids, georeference, .. } = raster;
     notes.extend(georeference.as_ref().and_then(|at| projection::north_note(at, rows, cols)));

@@ -140,7 +140,7 @@ fn camera(text: &str) -> Result<CameraAt, String> {
         return Ok(at(45.0 * eighth as f64, ELEVATION));
     }
     let wrong = || {
-        "south, north-east or another of eight directions, \"from 45 up 30\", or AZ,EL[,DISTANCE] in degrees and metres"
+        "south, north-east or another of eight directions, \"from 45 up 30\" or AZ,EL[,DISTANCE] in degrees and metres"
             .to_owned()
     };
     let number = |word: &str| word.parse().map_err(|_| wrong());

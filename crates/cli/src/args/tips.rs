@@ -22,7 +22,7 @@ const OF_GDALDEM: [(&[&str], &str, &str); 3] = [
 pub fn add(mut error: clap::Error, parser: &Command, words: &[OsString]) -> clap::Error {
     let tip = match error.kind() {
         ErrorKind::UnknownArgument => {
-            negative_camera(words).or_else(|| of_gdaldem(&error, parser, words))
+            negative_camera(&error, parser, words).or_else(|| of_gdaldem(&error, parser, words))
         }
         ErrorKind::MissingRequiredArgument => missing_input(words),
         _ => None,
@@ -46,12 +46,17 @@ fn of_gdaldem(error: &clap::Error, parser: &Command, words: &[OsString]) -> Opti
     Some((*tip).to_owned())
 }
 
-/// `--camera -10,40`: a value that begins like a flag.
-fn negative_camera(words: &[OsString]) -> Option<String> {
+/// `--camera -10,40`: clap takes the value for a flag, and reports `-1`.
+fn negative_camera(error: &clap::Error, parser: &Command, words: &[OsString]) -> Option<String> {
     let at = words.iter().position(|word| word == "--camera")?;
     let value = words.get(at + 1)?.to_str()?;
-    let is_number = value.strip_prefix('-')?.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    is_number.then(|| format!("write --camera={value}"))
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    let is_it = value.starts_with(found.as_str()) && value.starts_with('-');
+    let command = words.iter().skip(1).find_map(|word| parser.find_subcommand(word))?;
+    let has_camera = command.get_arguments().any(|arg| arg.get_id() == "camera");
+    (is_it && has_camera).then(|| format!("a value that begins with - needs =: --camera={value}"))
 }
 
 /// `info --json dem.tif`: the input was taken for the file to write.
@@ -59,7 +64,6 @@ fn missing_input(words: &[OsString]) -> Option<String> {
     let at = words.iter().position(|word| word == "--json")?;
     let file = Path::new(words.get(at + 1)?);
     let is_output = file.as_os_str() == "-" || file.extension().is_some_and(|e| e == "json");
-    (!is_output).then(|| {
-        format!("--json takes the file to write, here {}; give the input too", file.display())
-    })
+    (!is_output)
+        .then(|| format!("--json takes a file name: write `info {} --json`", file.display()))
 }

@@ -22,7 +22,7 @@ const PART: usize = 16;
 const AZIMUTHS_PART: u32 = 4;
 /// A trial should take so many seconds: in a few milliseconds the start of each pass counts too much.
 const TRIAL_SECONDS: f64 = 0.5;
-/// A longer estimate is worth a trial of less work.
+/// A longer estimate gets one more trial, on a smaller piece.
 const LONG_SECONDS: f64 = 10.0;
 /// The largest piece of a trial.
 const PIECE_AT_MOST: usize = 512;
@@ -43,8 +43,8 @@ pub struct Estimate {
 
 impl Estimate {
     /// Runs a part of the bake on a piece of the field, twice: only the first run makes pipelines. Then twice on a larger piece where
-    /// these runs were short: its sweeps can have another form and other pipelines. The times of the last run are proportional to the
-    /// work, but for what a smaller piece takes as well where the estimate is long.
+    /// these runs were short: its sweeps can have another form and other pipelines. Times are scaled by the
+    /// work. If the estimate is long, a smaller piece shows the part that does not grow with the work.
     ///
     /// # Errors
     /// Those of the bake. Some may apply to the piece alone.
@@ -65,8 +65,9 @@ impl Estimate {
         for (stage, measured) in stages.iter_mut().zip(&trials) {
             stage.seconds = scaled(stage.work, measured, None);
         }
-        // A driver may compile a frame's shaders again each time, which takes as long for a large field.
-        if total(&stages) > LONG_SECONDS {
+        // Some drivers compile the shaders of each frame again. That time does not depend on the size of the field.
+        if total(&stages) > LONG_SECONDS && longest > PIECE / 2 {
+            took += total(&trial(gpu, args, job, PIECE / 2)?);
             let smaller = trial(gpu, args, job, PIECE / 2)?;
             took += total(&smaller);
             for ((stage, measured), less) in stages.iter_mut().zip(&trials).zip(&smaller) {
@@ -104,11 +105,13 @@ impl Estimate {
     }
 }
 
-/// Seconds of a stage's work, from a trial's; with a trial of less work, what both spend whatever the work does not grow.
+/// Seconds of a stage, scaled by the work of a trial. With `less`, a trial of less work, the fixed part is not scaled.
 fn scaled(work: f64, trial: &Stage, less: Option<&Stage>) -> f64 {
-    let fixed = less.filter(|less| less.work < trial.work).map_or(0.0, |less| {
+    // A trial of less work that took longer shows noise alone.
+    let less = less.filter(|less| less.work < trial.work && less.seconds < trial.seconds);
+    let fixed = less.map_or(0.0, |less| {
         let rate = (trial.seconds - less.seconds) / (trial.work - less.work);
-        (trial.seconds - rate.max(0.0) * trial.work).clamp(0.0, trial.seconds)
+        (trial.seconds - rate * trial.work).max(0.0)
     });
     if trial.work > 0.0 { fixed + (trial.seconds - fixed) / trial.work * work } else { 0.0 }
 }
@@ -131,7 +134,7 @@ fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<
     let part = |count: u32, part: u32, least: u32| count.div_ceil(part).max(least).min(count);
     let azimuths = part(job.quality.azimuths, AZIMUTHS_PART, 4);
     let quality = Quality { azimuths, ..*job.quality };
-    // An odd number of directions would have a horizontal one. The search for ellipses on curved ground takes as long with few.
+    // An odd number of directions would have a horizontal one. Curved ellipses take the same time with fewer.
     let directions = match job.curvature {
         None => part(job.around.count() as u32, PART as u32, 4).next_multiple_of(2),
         Some(_) => job.around.count() as u32,
@@ -174,14 +177,14 @@ fn fewer(job: &Job) -> Angles {
 mod tests {
     use super::*;
 
-    /// Compilation of 2 s, and 3 s for a work of 6: a work of 60 takes 32 s, and 50 s by proportion alone.
+    /// 2 s of compilation and 0.5 s per unit of work: work 60 takes 32 s; plain scaling gives 50 s.
     #[test]
     fn what_does_not_grow_with_the_work_is_counted_once() {
         let of = |work, seconds| Stage { seconds, ..Stage::new("stage", work, "") };
         assert_eq!(scaled(60.0, &of(6.0, 5.0), None), 50.0);
         assert_eq!(scaled(60.0, &of(6.0, 5.0), Some(&of(2.0, 3.0))), 32.0);
         // Noise: the smaller one took longer, or has as much work.
-        assert_eq!(scaled(60.0, &of(6.0, 5.0), Some(&of(2.0, 6.0))), 5.0);
+        assert_eq!(scaled(60.0, &of(6.0, 5.0), Some(&of(2.0, 6.0))), 50.0);
         assert_eq!(scaled(1.0, &of(1.0, 5.0), Some(&of(1.0, 6.0))), 5.0);
         assert_eq!(scaled(60.0, &of(0.0, 5.0), None), 0.0);
     }

@@ -98,8 +98,8 @@ impl<'a> Job<'a> {
                 Source::Directions(of) => {
                     let rays = texels * self.around.count() as f64;
                     all.push(Stage::new(name, rays, "texels x directions"));
-                    if of.needs_sphere {
-                        // As many probes for each field.
+                    if of.probe.is_some() {
+                        // The number of probes does not depend on the field.
                         all.push(Stage::new(format!("{name}: {}", stage::PROBES), 1.0, "fields"));
                     }
                 }

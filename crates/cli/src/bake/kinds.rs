@@ -171,13 +171,15 @@ pub struct OfDirections {
     pub plan: fn(&Job, &Limits) -> Result<Plan>,
     /// Bytes per texel that wait for the files.
     pub bytes: fn(&Job) -> u64,
+    /// Work that does not depend on the outputs, in a stage of its own.
+    pub probe: Option<fn(&Job, &mut MapFiles)>,
     /// Writes the files from the plan's outputs, 32 bits per component.
     pub take: fn(&Job, &[Vec<f32>], &mut MapFiles) -> Result<()>,
 }
 
 /// The names of stages that several kinds have.
 pub mod stage {
-    /// What a curved base surface changes.
+    /// How much occlusion a curved base surface changes.
     pub const PROBES: &str = "probes of the base surface";
     pub const DIRECT: &str = "direct light";
     pub const POINTS: &str = "visible points";

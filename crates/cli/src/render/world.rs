@@ -28,7 +28,7 @@ pub fn write(picture: &Path, input: &Input, georeference: Option<&Georeference>)
 pub fn warn_of_stale(picture: &Path, why: &str) {
     let path = picture.with_extension("pgw");
     if path.exists() {
-        setup::warning(&format!("{}: not of this picture, because {why}", path.display()));
+        setup::warning(&format!("{} belongs to another picture, because {why}", path.display()));
     }
 }
 

@@ -50,7 +50,7 @@ pub struct Opening<'a, 'scope> {
     reading: Option<Reading<'scope>>,
     began: Instant,
     opened: Option<Opened>,
-    /// What has been read, while a thread makes the grids of the first preview.
+    /// The state and the preview, while a thread makes the first preview's grids.
     read: Option<(State, Preview)>,
     app: Option<App<'a>>,
     error: Option<Error>,

@@ -134,23 +134,27 @@ fn hillshade_has_no_note_on_the_curvature() {
     }
 }
 
-/// What `render` reads of a sun and a map does not gets a note.
+/// A value of a sun that a map ignores gets a note.
 #[test]
 fn maps_have_a_note_on_what_they_do_not_use_of_a_sun() {
     let folder = Folder::new();
     write_field(&folder, SIDE, |row, _| row as f32);
     for (map, sun, note) in [
         ("hillshade", "315,45", ""),
-        ("hillshade", "315,45,3", "note: --sun: its diameter changes nothing here"),
-        ("hillshade", "315,45,3,2", "note: --sun: its diameter and irradiance change nothing here"),
+        ("hillshade", "315,45,3", "note: --sun: hillshade ignores the diameter"),
+        (
+            "hillshade",
+            "315,45,3,2",
+            "note: --sun: hillshade ignores the diameter and the irradiance",
+        ),
         ("shadow", "315,45,3", ""),
-        ("shadow", "315,45,3,2", "note: --sun: its irradiance changes nothing here"),
+        ("shadow", "315,45,3,2", "note: --sun: shadow ignores the irradiance"),
     ] {
         let words = [map, "field.npy", "--cell", "1", "-o", "o.npy", "--sun", sun];
         let said = |more: &[&str]| {
             let err = folder.run_without_driver(&[&words[..], more].concat()).err;
             // Without a driver a map of shadows then fails.
-            err.lines().filter(|line| line.contains("--sun: its")).collect::<String>()
+            err.lines().filter(|line| line.contains(" ignores ")).collect::<String>()
         };
         assert_eq!([said(&[]), said(&["-q"])], [note, ""], "{words:?}");
     }

@@ -202,7 +202,7 @@ fn gpu_a_sun_that_has_set_is_night() {
     assert!(dusk == sky);
     let run = folder.run_str(&format!("render {input} --sun 10,-95 -o wrong.exr"));
     assert_eq!((run.status, run.notes.as_str()), (Some(2), ""), "{}", run.err);
-    // A sun at the horizontal lights nearly nothing.
+    // A sun at elevation 0 does not light level ground.
     for (flags, is_black) in [("--sun 100,0,0", true), ("--sun 100,30", false)] {
         let run = succeeded(&folder, &format!("render {input} {flags} -o low.png"));
         assert_eq!(run.notes.contains("% of the picture is lit"), is_black, "{}", run.notes);

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// The largest shift from whole cells, in cells: positions and cell sizes are rounded in files.
 const SHIFT: f64 = 0.01;
+/// Longitudes of the same meridian differ by these, degrees.
+const TURNS: [f64; 2] = [360.0, -360.0];
 /// The most grid points of a mosaic, for each grid point in its files.
 const SPREAD: u64 = 64;
 
@@ -52,7 +54,15 @@ pub(super) fn joined(
     let [bottom, right] = ends.fold([i64::MIN; 2], |[b, r], [y, x]| [b.max(y), r.max(x)]);
     let size = [bottom.abs_diff(top) as usize, right.abs_diff(left) as usize];
     let window = match bbox {
-        Some(bbox) => Window::of(&first, Some(&shifted(&at, [top, left])), size, bbox)?,
+        Some(bbox) => {
+            let at = shifted(&at, [top, left]);
+            let of = |turn: f64| Window::of(&first, Some(&at), size, turned(bbox, turn));
+            let is_degrees = matches!(cell, Cell::Degrees { .. });
+            of(0.0).or_else(|error| {
+                let mut turns = TURNS.into_iter().filter(|_| is_degrees);
+                turns.find_map(|turn| of(turn).ok()).ok_or(error)
+            })?
+        }
         None => Window::whole(size),
     };
     let (rows, cols) = size_of_part(&first, "mosaic", [window.rows.len(), window.cols.len()])?;
@@ -144,7 +154,7 @@ fn mixed_units(units: &[(String, Option<f64>)]) -> Option<String> {
     (!unknown.is_empty()).then(|| {
         format!(
             "in {}: no known unit of height, so heights are read as metres; those of {scaled} are in units of \
-             {unit} m; as `z_scale` applies to all files, state the unit in the file, as with \
+             {unit} m; `z_scale` applies to all files, so state the unit in the file: \
              `gdal_edit.py -units ft FILE`",
             unknown.join(", ")
         )
@@ -185,24 +195,44 @@ fn whole_cells(
     Ok(shift.map(|cells| cells.round() as i64))
 }
 
-/// Moves tiles by a whole circle where they are narrower together, as two on either side of longitude 180 are.
+/// Shifts tiles by 360 degrees where that makes the joined field narrower, as for tiles on both sides of longitude 180: the circle
+/// is cut at its widest gap between tiles. The first tile stays.
 fn cross_antimeridian(tiles: &[Tile], corners: &mut [[i64; 2]], cell: f64) {
     let circle = (360.0 / cell).round();
     if (circle * cell - 360.0).abs() > SHIFT * cell {
         return;
     }
-    let width = |corners: &[[i64; 2]]| {
-        let ends = tiles.iter().zip(corners).map(|(tile, at)| at[1] + tile.raster.cols as i64);
-        let begin = corners.iter().map(|at| at[1]).min();
-        ends.max().zip(begin).map(|(end, begin)| end - begin)
+    let circle = circle as i64;
+    let spans = || {
+        let widths = tiles.iter().map(|tile| tile.raster.cols as i64);
+        corners.iter().map(|at| at[1].rem_euclid(circle)).zip(widths)
     };
-    let mut moved = corners.to_vec();
-    for [_, col] in &mut moved {
-        *col -= ((*col as f64 / circle).round() * circle) as i64;
+    let mut sorted: Vec<(i64, i64)> = spans().collect();
+    sorted.sort_unstable();
+    // Where the gap before each tile begins: the farthest end of those before it, around the circle.
+    let last = sorted.iter().map(|(start, width)| start + width).max().unwrap_or(0) - circle;
+    let mut end = last;
+    let mut widest = (i64::MIN, 0);
+    for (start, width) in sorted {
+        widest = widest.max((start - end, start));
+        end = end.max(start + width);
     }
-    if width(&moved) < width(corners) {
-        corners.copy_from_slice(&moved);
+    let (_, cut) = widest;
+    let moved: Vec<i64> = spans().map(|(start, _)| (start - cut).rem_euclid(circle)).collect();
+    let width = |starts: &[i64]| {
+        let ends = tiles.iter().zip(starts).map(|(tile, start)| start + tile.raster.cols as i64);
+        ends.max().zip(starts.iter().min()).map(|(end, begin)| end - begin)
+    };
+    let own: Vec<i64> = corners.iter().map(|at| at[1]).collect();
+    if width(&moved) < width(&own) {
+        let by = own[0] - moved[0];
+        corners.iter_mut().zip(moved).for_each(|(at, start)| at[1] = start + by);
     }
+}
+
+/// A box some degrees to the east.
+fn turned([west, south, east, north]: [f64; 4], turn: f64) -> [f64; 4] {
+    [west + turn, south, east + turn, north]
 }
 
 /// The position some rows and columns from `at`.
@@ -309,9 +339,24 @@ impl Window {
             start.clamp(0.0, count as f64) as usize..end.clamp(0.0, count as f64) as usize
         };
         let [width, height] = at.cell;
+        let columns =
+            |turn: f64| span((west + turn - left) / width, (east + turn - left) / width, cols);
+        let mut all = columns(0.0);
+        // In degrees the box may be given on the other side of longitude 180. Values that are read in vain are cut later.
+        let [first, low, last, high] = at.extent(rows, cols);
+        if first.abs().max(last.abs()) <= 540.0 && low.abs().max(high.abs()) <= 91.0 {
+            for other in TURNS.map(columns).into_iter().filter(|other| !other.is_empty()) {
+                let is_first = all.is_empty();
+                all = if is_first {
+                    other
+                } else {
+                    all.start.min(other.start)..all.end.max(other.end)
+                };
+            }
+        }
         Self {
             rows: span((top - north) / height, (top - south) / height, rows),
-            cols: span((west - left) / width, (east - left) / width, cols),
+            cols: all,
             note: None,
         }
     }

@@ -102,22 +102,28 @@ pub(super) fn scale_warning(
         let [read, are] = [cell_m, [cell_m[0] * across, cell_m[1] * along]].map(|cell| cell.map(text));
         format!(
             "metres of EPSG:{code} are not metres on the ground: cells are read as {} x {} m, and are {} x {} m at the \
-             centre, which `cell_m` {},{} states",
+             centre; `cell_m` {},{} sets that size",
             read[0], read[1], are[0], are[1], are[0], are[1]
         )
     })
 }
 
-/// A projected system whose code is not known here: neither its north nor its scale is.
-pub(super) fn unknown_warning(at: &Georeference) -> Option<String> {
-    let is_projected = at.keys.entries.iter().any(|e| [e[0], e[3]] == [1024, 1]);
-    let is_known =
-        at.keys.is_web_mercator() || projected_code(&at.keys).and_then(systems).is_some();
-    (is_projected && !is_known).then(|| {
-        "the projection has no known EPSG code: grid north is taken as true north, and its metres as metres on the ground; to \
-         correct both, reproject with `gdalwarp -t_srs` to a system with a code, such as UTM"
-            .to_owned()
-    })
+/// A warning about a projected system whose convergence and scale are unknown. With `has_cell` the cells are the user's.
+pub(super) fn unknown_warning(at: &Georeference, has_cell: bool) -> Option<String> {
+    let states_projection = at.keys.entries.iter().any(|e| e[0] == 3072);
+    let code = projected_code(&at.keys);
+    if !states_projection || at.keys.is_web_mercator() || code.and_then(systems).is_some() {
+        return None;
+    }
+    let what = code.map_or_else(
+        || "the projection has no EPSG code".to_owned(),
+        |code| format!("EPSG:{code} is not supported"),
+    );
+    let lengths = if has_cell { "" } else { ", and lengths as lengths on the ground" };
+    Some(format!(
+        "{what}: grid north is read as true north{lengths}; for a field on the Earth, `gdalwarp -t_srs EPSG:CODE in.tif out.tif` with \
+         the code of a UTM zone corrects that"
+    ))
 }
 
 /// Where grid north is not true north, in the middle of a field.

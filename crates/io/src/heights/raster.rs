@@ -134,33 +134,39 @@ impl Raster {
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
         }
         let unit_warning = self.unit_warning.take();
+        let is_unit_open =
+            self.unit_m.is_none() && unit_warning.is_none() && !options.is_unit_known;
         self.warnings.extend(unit_warning.filter(|_| !options.is_unit_known));
         if self.is_8_bit {
             let text = "heights are 8-bit integers, as in a picture: slopes have steps";
             self.warnings.push(text.to_owned());
         }
-        if self.unit_m.is_none() && !options.is_unit_known {
+        if is_unit_open {
             self.warnings.extend(self.likely_codes());
         }
     }
 
-    /// A warning of heights in metres that are likely to be the codes of a picture.
+    /// A warning about heights that are probably pixel values, not metres. Marks of voids that no one states have their own warning.
     fn likely_codes(&self) -> Option<String> {
         let is_void = |i: usize| self.voids.as_ref().is_some_and(|voids| voids[i]);
-        let heights =
-            || self.values.iter().enumerate().filter(|(i, _)| !is_void(*i)).map(|(_, v)| *v);
-        let (low, high) =
-            heights().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
-        let what =
-            if !self.is_8_bit && [low, high] == [0.0, 255.0] && heights().all(|v| v.fract() == 0.0)
-            {
-                "heights are the whole numbers 0 to 255, as in a picture".to_owned()
-            } else if high - low > EARTH_RELIEF_M && high.abs().max(low.abs()) < HUGE {
-                format!("heights span {:.0} m, more than the Earth's relief", high - low)
-            } else {
-                return None;
-            };
-        Some(format!("{what}, and no unit is stated; `z_scale` gives the metres of a step"))
+        let is_mark = |v: f64| MARKS.contains(&v) || self.replaced.iter().any(|(own, _)| *own == v);
+        let all = self.values.iter().enumerate().filter(|(i, v)| !is_void(*i) && !is_mark(**v));
+        let (mut low, mut high, mut is_whole) = (f64::MAX, f64::MIN, true);
+        for (_, v) in all {
+            (low, high) = (low.min(*v), high.max(*v));
+            is_whole &= v.fract() == 0.0;
+        }
+        let is_code = !self.is_8_bit && is_whole && self.scale == [1.0, 0.0];
+        let what = if is_code && [low, high] == [0.0, 255.0] {
+            "heights are whole numbers from 0 to 255, as in an 8-bit picture".to_owned()
+        } else if high - low > LARGEST_RELIEF_M && high.abs().max(low.abs()) < HUGE {
+            format!("heights span {:.0} m, more than the relief of any planet", high - low)
+        } else {
+            return None;
+        };
+        Some(format!(
+            "{what}, and the file states no unit: set `z_scale` to the metres per unit, or to 1 if they are metres"
+        ))
     }
 
     /// Warnings of heights with a no-data value of the file that `nodata` replaces.
@@ -182,7 +188,6 @@ impl Raster {
 
     /// The lowest value and how often it occurs, where it is one of the usual marks of voids.
     fn likely_voids(&self) -> Option<(f64, usize)> {
-        const MARKS: [f64; 3] = [-9999.0, -32768.0, -99999.0];
         let is_void = |i: usize| self.voids.as_ref().is_some_and(|voids| voids[i]);
         let heights =
             || self.values.iter().enumerate().filter(|(i, _)| !is_void(*i)).map(|(_, v)| *v);
@@ -230,7 +235,7 @@ impl Raster {
                 {
                     warnings.push(
                         "no reference system: cells are read as metres, but the corners could be longitudes and latitudes; \
-                         if they are, `gdal_translate -a_srs EPSG:4326 in out.tif` states it"
+                         if they are, write the system into a file: `gdal_translate -a_srs EPSG:4326 in.asc out.tif`"
                             .to_owned(),
                     );
                 }
@@ -249,8 +254,11 @@ impl Raster {
     }
 }
 
-/// From the deepest sea to the highest summit, metres.
-const EARTH_RELIEF_M: f64 = 19_800.0;
+/// The usual marks of voids.
+const MARKS: [f64; 3] = [-9999.0, -32768.0, -99999.0];
+
+/// Above that of Mars, from Olympus Mons to Hellas: 29.5 km.
+const LARGEST_RELIEF_M: f64 = 30_000.0;
 
 /// No height is so large. Floats near the largest mark voids, often written with few digits.
 const HUGE: f64 = 1e30;
@@ -356,12 +364,14 @@ pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
     [east, north]
 }
 
-/// Whether the corners of coarse cells without a reference system, which are read as metres, could be longitudes and latitudes. A
-/// grid that begins at (0, 0) has no position.
+/// Whether the corners of cells of 0.1 to 5 units, without a reference system, could be longitudes and latitudes. Local grids often
+/// begin at (0, 0) or lie about it.
 fn could_be_degrees([west, south, east, north]: [f64; 4], cell: [f64; 2]) -> bool {
     let is_on_earth = [west, east].iter().all(|x| x.abs() <= 360.0)
         && [south, north].iter().all(|y| y.abs() <= 90.0);
-    cell.iter().all(|c| (0.1..=5.0).contains(c)) && is_on_earth && [west, south] != [0.0; 2]
+    let has_origin = (west - cell[0]..=east + cell[0]).contains(&0.0)
+        && (south - cell[1]..=north + cell[1]).contains(&0.0);
+    cell.iter().all(|c| (0.1..=5.0).contains(c)) && is_on_earth && !has_origin
 }
 
 /// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360, ±90) *and* either the cell is
@@ -459,38 +469,62 @@ mod tests {
         assert_eq!([warned(Some(-9999.0), None), warned(None, Some(-1.0))], [false; 2]);
     }
 
-    /// Values of a whole code range, or of more than the Earth has, without a unit; not where the user or the file states one.
+    /// Whole numbers from 0 to 255 and a span above the largest relief get a warning, unless the user or the file states a unit.
     #[test]
     fn likely_codes_get_a_warning() {
         let warned = |values: &[f64], unit_m: Option<f64>, is_unit_known: bool| {
             let mut raster = Raster { unit_m, ..Raster::bare(1, values.len(), values.to_vec()) };
             raster.interpret(&HeightOptions { is_unit_known, ..HeightOptions::default() });
-            raster.warnings.iter().any(|text| text.contains("`z_scale` gives the metres of a step"))
+            raster.warnings.iter().any(|text| text.contains("the file states no unit"))
         };
         for (values, is_likely) in [
             (&[0.0, 17.0, 255.0][..], true),
             (&[0.0, 17.5, 255.0], false),
             (&[1.0, 17.0, 255.0], false),
             (&[0.0, 65_535.0], true),
+            (&[0.0, 32_767.0], true),
             (&[-10_900.0, 8_849.0], false),
+            // Mars, from MOLA.
+            (&[-8_201.0, 21_241.0], false),
+            (&[-32_768.0, 8_849.0], false),
             (&[0.0, -3e38], false),
         ] {
             assert_eq!(warned(values, None, false), is_likely, "{values:?}");
             assert!(!warned(values, Some(1.0), false) && !warned(values, None, true), "{values:?}");
         }
+        let mut unknown = Raster {
+            unit_warning: Some("mGal".to_owned()),
+            ..Raster::bare(1, 2, vec![0.0, 65_535.0])
+        };
+        unknown.interpret(&HeightOptions::default());
+        assert_eq!(unknown.warnings, ["mGal"]);
     }
 
-    /// Corners on the Earth and cells of a tenth of a degree or more; not at the origin, and not of fine cells.
+    /// Corners on the Earth and cells of a tenth of a degree or more; neither about the origin nor of fine cells.
     #[test]
     fn coarse_degrees_get_a_warning() {
         for (extent, cell, could_be) in [
             ([7.0, 46.0, 9.5, 48.5], [0.25; 2], true),
+            ([-125.0, 25.0, -65.0, 50.0], [0.25; 2], true),
             ([0.0, 0.0, 9.5, 48.5], [0.25; 2], false),
+            ([-0.5, -0.5, 9.5, 48.5], [1.0; 2], false),
+            ([-30.0, -30.0, 30.0, 30.0], [0.5; 2], false),
             ([7.0, 46.0, 9.5, 95.0], [0.25; 2], false),
             ([500.0, 46.0, 510.0, 48.5], [1.0; 2], false),
             ([7.0, 46.0, 47.0, 86.0], [10.0; 2], false),
+            ([7.0, 46.0, 8.0, 47.0], [0.05; 2], false),
         ] {
             assert_eq!(could_be_degrees(extent, cell), could_be, "{extent:?}");
+        }
+        let text = |west: f64| {
+            format!("ncols 2\nnrows 1\nxllcorner {west}\nyllcorner 46\ncellsize 0.25\n1 2\n")
+        };
+        for (west, is_warned) in [(7.0, true), (500_000.0, false)] {
+            let file = std::path::Path::new("a.asc");
+            let read =
+                crate::heights::parse_field(file, text(west).as_bytes(), &HeightOptions::default());
+            let warnings = read.unwrap().warnings.concat();
+            assert_eq!(warnings.contains("could be longitudes"), is_warned, "{west}: {warnings}");
         }
     }
 

@@ -105,7 +105,7 @@ impl Sidecar {
                         notes.push(format!("the coordinate reference system of {name} is EPSG:{code}"));
                     }
                     None => warnings.push(format!(
-                        "{name} gives the cell unit but no EPSG code for {}; outputs have no coordinate reference system",
+                        "{name} gives the cell unit but no EPSG code for {}; outputs have no coordinate reference system, and grid north is read as true north",
                         crs.name
                     )),
                 }

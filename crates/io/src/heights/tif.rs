@@ -338,6 +338,11 @@ fn unreadable(method: u16) -> Option<&'static str> {
 /// file beside it, as GDAL writes them.
 fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
     const IS_MASK: u32 = 4;
+    // Beside a packed file lies the mask of the file in it.
+    let path = match path.parent().filter(|packed| packed.is_file()) {
+        Some(packed) => &packed.with_file_name(path.file_name().unwrap_or_default()),
+        None => path,
+    };
     let mut beside = path.as_os_str().to_owned();
     beside.push(".msk");
     let has_mask = || {
@@ -365,8 +370,8 @@ fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
         return None;
     };
     Some(format!(
-        "the {what} of this file is not read: all its heights count, but `gdalwarp -dstnodata -9999` turns masked \
-         heights into voids"
+        "the {what} of this file is not read, so all its heights are used; `gdalwarp -dstnodata -9999 in.tif out.tif` turns \
+         masked heights into voids"
     ))
 }
 

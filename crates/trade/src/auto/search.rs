@@ -447,9 +447,11 @@ fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> 
         Goal::MaxError(_) => t.measured.at_most,
         Goal::MaxCost(_) => t.ns,
     };
-    // One that reached the goal in a search, and not in the frame that confirms, is none to report.
-    let missed = trials.iter().filter(|trial| !goal.is_reached(trial));
-    let Some(nearest) = missed.min_by(|a, b| miss(a).total_cmp(&miss(b))) else {
+    // Settings that reached the goal in the search, but not in the confirming frame, are not the nearest.
+    let reached = |trial: &Trial| goal.is_reached(trial);
+    let Some(nearest) =
+        trials.iter().min_by(|a, b| reached(a).cmp(&reached(b)).then(miss(a).total_cmp(&miss(b))))
+    else {
         return Error::Limit {
             what: "choosing settings".into(),
             needs: "settings that fit the device".into(),

@@ -11,6 +11,7 @@ pub const ELLIPSE: OfDirections = OfDirections {
     needs_sphere: false,
     plan: |job, limits| plan::ellipses(job.field(), job.border(), job.around, limits),
     bytes: |_| 2 * 16 + 6 * 4,
+    probe: None,
     take: |_, outputs, files| {
         take(files, outputs[0].as_chunks::<4>().0)?;
         let [along, across] = [0, 1].map(|part| plane(outputs[1].as_chunks::<4>().0, part));
@@ -49,6 +50,7 @@ pub const CURVED_ELLIPSE: OfDirections = OfDirections {
         plan::curved_ellipses(job.field(), job.border(), job.around, curvature, limits)
     },
     bytes: |_| 10 * 16 + 5 * 40 + 25 * 4,
+    probe: Some(probe_curved),
     take: take_curved,
 };
 
@@ -84,14 +86,17 @@ pub fn curved_ellipse(job: &Job, _: &Wanted) -> Result<Map> {
     Ok(Map { planes, values, is_array: true, constants, ..Map::default() })
 }
 
-fn take_curved(job: &Job, outputs: &[Vec<f32>], files: &mut MapFiles) -> Result<()> {
-    let steps = job.curvature.expect("its map checks it");
-    let [outwards, inwards] = steps;
+fn probe_curved(job: &Job, files: &mut MapFiles) {
+    let [outwards, inwards] = job.curvature.expect("its map checks it");
     let bent = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
     for (per_m, base) in bent.into_iter().zip(&BASES[1..]) {
         let changed = Curvature { per_m }.occlusion_change(job.field(), job.border());
         files.remark(format!("base surface curved {}: {changed}", base.replace('_', " ")));
     }
+}
+
+fn take_curved(job: &Job, outputs: &[Vec<f32>], files: &mut MapFiles) -> Result<()> {
+    let steps = job.curvature.expect("its map checks it");
     let texel = |image: usize, at: usize| outputs[image].as_chunks::<4>().0[at];
     let of = |at: usize| {
         let five = [0, 1, 2, 3, 4].map(|k| {
@@ -117,6 +122,7 @@ pub const VISIBLE_POINTS: OfDirections = OfDirections {
     plan: |job, limits| plan::visible_points(job.field(), job.border(), job.around, limits),
     // Words, and the points decoded from them.
     bytes: |job| 8 * job.around.count() as u64,
+    probe: None,
     take: take_points,
 };
 

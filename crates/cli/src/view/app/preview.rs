@@ -248,7 +248,7 @@ impl Preview {
         }
     }
 
-    /// Whether a thread makes grids.
+    /// Whether the thread that makes grids still runs.
     pub fn makes_grids(&self) -> bool {
         self.next_grids.as_ref().is_some_and(|thread| !thread.is_finished())
     }

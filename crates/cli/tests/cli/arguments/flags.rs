@@ -411,6 +411,24 @@ fn sizes_that_no_machine_holds_are_refused() {
     );
 }
 
+/// A camera's azimuth may be negative; other unknown flags and commands without a camera get no such tip.
+#[test]
+fn a_negative_camera_has_a_tip() {
+    let folder = Folder::new();
+    let tip = "tip: a value that begins with - needs =: --camera=-10,40";
+    for (args, has_tip) in [
+        ("render a.asc -o o.png --camera -10,40", true),
+        ("render a.asc -o o.png --bogus --camera -10,40", false),
+        ("bench --camera -10,40", false),
+    ] {
+        let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.status, Some(2), "{args}");
+        assert_eq!(run.err.contains(tip), has_tip, "{args}: {}", run.err);
+    }
+    let run = folder.run_without_driver(&["info", "a.asc", "--json"]);
+    assert!(run.status == Some(0) && run.out.starts_with('{'), "{}", run.out);
+}
+
 /// Flags of gdaldem get our flag as a tip, where the command has it.
 #[test]
 fn flags_of_gdaldem_have_tips() {
@@ -429,7 +447,7 @@ fn flags_of_gdaldem_have_tips() {
             (
                 "info --json dem.tif",
                 2,
-                &["<INPUT>", "tip: --json takes the file to write, here dem.tif"],
+                &["<INPUT>", "tip: --json takes a file name: write `info dem.tif --json`"],
             ),
         ],
     );

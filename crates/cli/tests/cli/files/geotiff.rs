@@ -146,12 +146,12 @@ fn gpu_a_picture_has_a_world_file() {
     // A picture without a position leaves the file alone and warns.
     let run = folder.run_str("render a.npy -o o.png --azimuths 8");
     assert_eq!(run.status, Some(0), "{}", run.err);
-    assert!(run.notes.contains("warning: o.pgw: not of this picture"), "{}", run.notes);
+    assert!(run.err.contains("warning: o.pgw belongs to another picture"), "{}", run.notes);
     assert_eq!(std::fs::read_to_string(folder.path("o.pgw")).unwrap(), world);
     let run = folder.run_str("render utm.tif -o o.png --azimuths 8 --camera south --size 32x18");
     assert_eq!(run.status, Some(0), "{}", run.err);
-    let note = "warning: o.pgw: not of this picture, because it is a camera's";
-    assert!(run.notes.contains(note), "{}", run.notes);
+    let note = "warning: o.pgw belongs to another picture, because this one is a camera view";
+    assert!(run.err.contains(note), "{}", run.err);
     done(&folder, "render a.npy -o p.png --azimuths 8");
     assert!(!folder.path("p.pgw").exists());
 }

@@ -332,3 +332,71 @@ fn files_outside_the_box_are_not_decoded() {
         assert!(error.contains("b.tif"), "{error}");
     }
 }
+
+/// A tile of degrees, a cell a degree, its heights the longitudes of its columns from 0 to 359.
+fn of_longitudes(west: i64, cols: usize) -> Tile {
+    let values = (0..2 * cols).map(|i| (west + (i % cols) as i64).rem_euclid(360) as f64).collect();
+    let keys = GeoKeys::of_code(4326, true);
+    let at = Georeference { corner: [west as f64, 10.0], cell: [1.0; 2], keys };
+    let cell = Cell::Degrees { cell: [1.0; 2], latitude: 9.0, is_guess: false };
+    let raster = Raster { cell, georeference: Some(at), ..Raster::bare(2, cols, values) };
+    (format!("{west}").into(), raster)
+}
+
+/// The west of the joined field modulo 360, and the heights of its first row.
+fn from_west(raster: &Raster) -> (f64, Vec<f64>) {
+    let corner = raster.georeference.as_ref().unwrap().corner;
+    (corner[0].rem_euclid(360.0), raster.values[..raster.cols].to_vec())
+}
+
+/// Tiles join by their places on the circle in every order, without a gap that another cut avoids. The first tile keeps its place.
+#[test]
+fn tiles_join_on_the_circle_in_every_order() {
+    let longitudes =
+        |west: i64, count: i64| (west..west + count).map(|x| (x % 360) as f64).collect();
+    for (tiles, west, count) in [
+        ([(170, 10), (-180, 10), (-170, 5)], 170, 25),
+        // Three on the whole circle: none moves, as no cut is narrower.
+        ([(-180, 120), (-60, 120), (60, 120)], 180, 360),
+        ([(-10, 10), (0, 10), (10, 10)], 350, 30),
+        ([(-180, 91), (90, 90), (1, 89)], 1, 270),
+    ] {
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let chosen = order.map(|i| tiles[i]);
+            let all = chosen.map(|(west, cols)| of_longitudes(west, cols));
+            let raster = joined(all.into()).unwrap();
+            let expected: Vec<f64> = longitudes(west, count);
+            assert_eq!(from_west(&raster), (west as f64, expected), "{chosen:?}");
+            let corner = raster.georeference.unwrap().corner[0];
+            let first = chosen[0].0 as f64;
+            assert!((corner..corner + count as f64).contains(&first), "{chosen:?}: {corner}");
+        }
+    }
+    // Cells that do not divide the circle stay where they are.
+    let odd = |west: f64| {
+        let (path, mut raster) = of_longitudes(0, 2);
+        let cell = [0.7; 2];
+        raster.cell = Cell::Degrees { cell, latitude: 9.0, is_guess: false };
+        let keys = GeoKeys::of_code(4326, true);
+        raster.georeference = Some(Georeference { corner: [west, 10.0], cell, keys });
+        (path, raster)
+    };
+    assert!(joined(vec![odd(-175.0), odd(175.0)]).is_err());
+}
+
+/// A box is found on either side of longitude 180, whichever tile is first.
+#[test]
+fn boxes_are_found_across_longitude_180() {
+    for [first, second] in [[(170, 10), (-180, 10)], [(-180, 10), (170, 10)]] {
+        for (west, east) in [(175.0, 185.0), (-185.0, -175.0)] {
+            let tiles = [first, second].map(|(west, cols)| of_longitudes(west, cols));
+            let raster = joined_in(tiles.into(), Some([west, 8.0, east, 10.0])).unwrap();
+            assert!(!raster.voids.as_ref().unwrap().contains(&true), "{first:?} {west}");
+            let expected = (175..185).map(f64::from).collect();
+            assert_eq!(from_west(&raster), (175.0, expected), "{first:?} {west}");
+        }
+        let tiles = [first, second].map(|(west, cols)| of_longitudes(west, cols));
+        let raster = joined_in(tiles.into(), Some([-180.0, 8.0, -176.0, 10.0])).unwrap();
+        assert_eq!(from_west(&raster), (180.0, vec![180.0, 181.0, 182.0, 183.0]), "{first:?}");
+    }
+}
