@@ -44,7 +44,7 @@ settings! {
 
         /// Cells between the lines of a sweep
         ///
-        /// Wider spacing is faster and less exact. "exact" puts every texel on a line and counts every crossing.
+        /// With wider spacing the sweep is faster and less exact; shading takes as long. "exact" puts every texel on a line and counts every crossing.
         Expert "lines" lines: Lines = Lines::Cell, Lines::WORDS;
 
         /// Interpolation of the results of lines to texels

@@ -6,7 +6,7 @@ pub mod camera;
 mod choices;
 pub mod world;
 
-use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::gpu::{DeviceReport, Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{HeightField, Quality, Scene};
@@ -237,9 +237,10 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         } else {
             let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
             crate::say!(
-                "Wrote {} ({cols}x{rows}) in {ms:.1} ms of GPU time on {}.",
+                "Wrote {} ({cols}x{rows}) in {ms:.1} ms of GPU time on {}{}.",
                 args.output.display(),
-                gpu.report().name
+                gpu.report().name,
+                of_first_frame(gpu.report())
             );
         }
         setup::say_light(&args.lights, &scene, added_bounces);
@@ -253,6 +254,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
+}
+
+/// Software drivers compile shaders while the first frame runs.
+pub fn of_first_frame(report: &DeviceReport) -> &'static str {
+    if report.limits.is_cpu { ", compiling its shaders included" } else { "" }
 }
 
 pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Result<()> {

@@ -210,7 +210,10 @@ pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value
     }
     json!({
         "traceEvents": events, "displayTimeUnit": "ms",
-        "otherData": { "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION") },
+        "otherData": {
+            "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"), "commit": env!("RIDGELIGHT_COMMIT"),
+            "frame": "the run in flow whose GPU time is nearest the median", "gpu_ms": start_us * 1e-3,
+        },
     })
 }
 

@@ -32,6 +32,12 @@ pub fn goal(max_error: Option<f64>, time_budget: Option<f64>) -> Result<Option<G
     for (flag, value) in [("--max-error", max_error), ("--time-budget", time_budget)] {
         value.map_or(Ok(()), |x| super::check_positive(flag, x))?;
     }
+    if let Some(error) = max_error.filter(|error| *error > 1.0) {
+        setup::warning(&format!(
+            "--max-error {error} is {} % of the mean light; 0.01 is 1 %",
+            100.0 * error
+        ));
+    }
     let cost = time_budget.map(|ms| Goal::MaxCost(ms * 1e6));
     Ok(max_error.map(Goal::MaxError).or(cost))
 }

@@ -193,8 +193,9 @@ impl CameraView {
         let [width, height] = self.options.size;
         let name = args.output.display();
         crate::say!(
-            "Wrote {name} ({width}x{height}) in {ms:.1} ms of GPU time on {}.",
-            report.name
+            "Wrote {name} ({width}x{height}) in {ms:.1} ms of GPU time on {}{}.",
+            report.name,
+            super::of_first_frame(report)
         );
         let step = self.options.mesh_step;
         if step > 1 {

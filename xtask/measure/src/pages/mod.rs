@@ -187,8 +187,8 @@ fn gpu() -> Result<String> {
         })
     };
     Ok(format!(
-        "On an [NVIDIA H200](benches/results/nvidia_h200.md) a frame of 64 azimuths with `--fuse aimed-nearest` takes {} ms at 256², {} ms at \
-         1024² and {} ms at 4096² (commit {commit}).\n",
+        "NVIDIA [H200](benches/results/nvidia_h200.md), 64 azimuths, `--fuse aimed-nearest` (not the default): {} ms at 256², {} ms \
+         at 1024², {} ms at 4096² (commit {commit}).\n",
         frame_ms("256")?,
         frame_ms("1024")?,
         frame_ms("4096")?

@@ -76,6 +76,11 @@ impl Earlier {
     /// A file that cannot be read, or is no report of `bench --json`; one of another device than the last file, or of
     /// another scene than this run.
     pub fn read_all(paths: &[PathBuf], scene: &Value) -> Result<Option<Self>> {
+        let twice = paths.iter().enumerate().find(|(i, path)| paths[..*i].contains(path));
+        if let Some((_, path)) = twice {
+            let expected = "each report once: they show how much processes differ";
+            return Err(Error::setting("--against", format!("{} twice", path.display()), expected));
+        }
         let reports = paths.iter().map(|path| Report::read(path)).collect::<Result<Vec<_>>>()?;
         let Some(last) = reports.last() else { return Ok(None) };
         for (report, path) in reports.iter().zip(paths) {
