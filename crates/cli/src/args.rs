@@ -416,6 +416,8 @@ pub struct BenchArgs {
     )]
     pub azimuth_list: Vec<u32>,
     /// Write a Chrome / Perfetto trace of one frame
+    ///
+    /// Of the runs in flow, the one whose GPU time is nearest the median.
     #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub trace: Option<PathBuf>,
     /// Compare with earlier --json files; exit status 1 if a pass is slower

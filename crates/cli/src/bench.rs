@@ -1,6 +1,7 @@
 //! GPU times by timestamps: verification first, then each pass alone and all passes in a frame.
 
 mod forms;
+mod noise;
 mod peaks;
 mod progress;
 mod rows;
@@ -22,6 +23,7 @@ use serde_json::{Value, json};
 use crate::args::BenchArgs;
 use crate::idle;
 use crate::setup::{self, Outcome, after_new_heights, scene_hash, tuned};
+use noise::{busy, noise};
 use progress::Progress;
 use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
@@ -35,8 +37,6 @@ const FEWEST: usize = 6;
 /// many runs, twice as many and so on: tested after every run, an interval would end rows whenever it happened to be narrow.
 const ENOUGH: usize = 10;
 const STABLE: f64 = 0.02;
-/// A frame whose median is known no better says that the machine is too noisy for a published table.
-const NOISY: f64 = 0.1;
 /// Runs of the peak rates at most.
 const PEAK_RUNS: usize = 20;
 /// Largest side of a fractal field, which needs 8 GiB of heights while it is made.
@@ -269,53 +269,6 @@ fn check_names(wanted: &[String], plan: &Plan, of_forms: Option<&Quality>) -> Re
 /// Whether a row has used up its time.
 fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
-}
-
-/// A warning if the median of a frame is too uncertain: reports the worst and the number of others.
-fn noise(rows: &[Row]) -> Option<String> {
-    let totals = || rows.iter().filter(|row| row.pass == "total");
-    let noisy = totals().filter(|row| row.spread() > Some(NOISY)).count();
-    let worst =
-        totals().max_by(|a, b| a.spread().unwrap_or(0.0).total_cmp(&b.spread().unwrap_or(0.0)))?;
-    let [cols, rows] = worst.size;
-    let others = match noisy {
-        0 => return None,
-        1 => String::new(),
-        count => format!("; {count} of {} totals exceed 10 %", totals().count()),
-    };
-    Some(format!(
-        "noisy: the 95 % confidence interval of the {} total of {cols}x{rows}, {} azimuths, spans {:.0} % of its median, expected at most \
-         10 %{others}",
-        worst.mode.replace('_', " "),
-        worst.azimuths,
-        100.0 * worst.spread()?
-    ))
-}
-
-/// A warning if other programs keep half of the cores or more busy: the median of a few counts of threads that run. Steady load
-/// widens no confidence interval. None where the system does not state it.
-fn busy() -> Option<String> {
-    const COUNTS: usize = 9;
-    const INTERVAL: Duration = Duration::from_millis(15);
-    let mut running = Vec::new();
-    for _ in 0..COUNTS {
-        std::thread::sleep(INTERVAL);
-        running.push(others_running(&std::fs::read_to_string("/proc/loadavg").ok()?)?);
-    }
-    running.sort_unstable();
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let others = running[COUNTS / 2];
-    (2 * others >= cores.max(2)).then(|| {
-        format!(
-            "busy: other programs run {others} threads on {cores} cores, so times may be too long"
-        )
-    })
-}
-
-/// Threads that run beside this one: the fourth entry of /proc/loadavg is "running/all".
-fn others_running(loadavg: &str) -> Option<usize> {
-    let (running, _) = loadavg.split_whitespace().nth(3)?.split_once('/')?;
-    running.parse::<usize>().ok()?.checked_sub(1)
 }
 
 /// Whether further runs would hardly move the median.
@@ -599,39 +552,11 @@ mod tests {
         assert!(message.contains("--azimuth-list: found 3, expected"), "{message}");
     }
 
-    #[test]
-    fn running_threads_are_counted_without_this_one() {
-        assert_eq!(others_running("0.20 0.18 0.12 1/80 11206\n"), Some(0));
-        assert_eq!(others_running("4.20 3.18 2.12 5/412 9\n"), Some(4));
-        assert_eq!([others_running(""), others_running("1 2 3 4 5")], [None; 2]);
-    }
-
     /// Sums of 1, 5 and 3: the median is the last run's.
     #[test]
     fn a_trace_is_of_the_run_nearest_the_median() {
         let run = |ns: f64| vec![Timing { label: "pass".into(), ns }];
         assert_eq!(nearest_to_median(vec![run(1.0), run(5.0), run(3.0)])[0].ns, 3.0);
         assert!(nearest_to_median(Vec::new()).is_empty());
-    }
-
-    #[test]
-    fn a_frame_of_a_noisy_machine_is_named() {
-        let plan = rows::tests::plan();
-        let row = |pass, step| Row::of(pass, "in_flow", &plan, &[], 4, (10, &spread(10, step)));
-        assert_eq!(noise(&[row("total", 1.5), row("sky_shade", 9.0)]), None);
-        let said = noise(&[row("total", 2.0)]).unwrap();
-        assert!(said.contains("in flow total of ") && said.contains(" spans 13 %"), "{said}");
-        assert!(!said.contains("totals"), "{said}");
-        // The worst of several, and their number.
-        let said = noise(&[row("total", 2.0), row("total", 1.5), row("total", 3.0)]).unwrap();
-        assert!(
-            said.contains(" spans 19 %") && said.ends_with("; 2 of 3 totals exceed 10 %"),
-            "{said}"
-        );
-        // Too few runs for an interval say nothing.
-        assert_eq!(
-            noise(&[Row::of("total", "in_flow", &plan, &[], 4, (3, &[1.0, 2.0, 9.0]))]),
-            None
-        );
     }
 }

@@ -36,6 +36,10 @@ fn gpu_an_earlier_report_gives_verdicts() {
     let metrics: Value =
         serde_json::from_slice(&std::fs::read(folder.path("metrics.json")).unwrap()).unwrap();
     assert_eq!(metrics.as_object().unwrap().len(), rows.len());
+    let twice = [&base[..], &["--against", "now.json,now.json"]].concat();
+    let run = folder.run(&twice);
+    assert_eq!(run.status, Some(2), "{}{}", run.out, run.err);
+    assert!(run.err.contains("--against: found now.json twice"), "{}", run.err);
     for (name, factor, word, status) in [("fast", 1e-3, "SLOWER", 1), ("slow", 1e3, "FASTER", 0)] {
         let mut changed = report.clone();
         for row in changed["rows"].as_array_mut().unwrap() {

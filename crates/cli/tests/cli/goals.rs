@@ -10,6 +10,18 @@ use ridgelight_io::HeightOptions;
 use crate::needs_vulkan::{attributes, plane, write_field};
 use crate::{Folder, read, refused, succeeded};
 
+/// A share above 1 is likely meant as a percentage.
+#[test]
+fn an_error_above_the_mean_gets_a_warning() {
+    let folder = Folder::new();
+    for (error, is_warned) in [("5", true), ("1", false), ("0.01", false)] {
+        let words = ["render", "a.asc", "-o", "out.exr", "--max-error", error];
+        let run = folder.run_without_driver(&words);
+        let said = run.err.contains(&format!("warning: --max-error {error} is 500 %"));
+        assert_eq!(said, is_warned, "{error}: {}", run.err);
+    }
+}
+
 #[test]
 fn wrong_goals_are_refused() {
     let folder = Folder::new();

@@ -206,6 +206,8 @@ fn gpu_a_sun_that_has_set_is_night() {
     for (flags, is_black) in [("--sun 100,0,0", true), ("--sun 100,30", false)] {
         let run = succeeded(&folder, &format!("render {input} {flags} -o low.png"));
         assert_eq!(run.notes.contains("% of the picture is lit"), is_black, "{}", run.notes);
+        // The drivers of the tests are software.
+        assert!(run.out.contains(", compiling its shaders included.\n"), "{}", run.out);
     }
     // A picture of the night is dark. 0.8 is code 231 of sRGB, 0.08 code 80.
     for (flags, brightest) in [("--sun 10,-5", 80), ("--sun 10,-5 --sky 0.5", 231)] {

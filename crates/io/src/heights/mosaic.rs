@@ -199,7 +199,7 @@ fn whole_cells(
 /// is cut at its widest gap between tiles. The first tile stays.
 fn cross_antimeridian(tiles: &[Tile], corners: &mut [[i64; 2]], cell: f64) {
     let circle = (360.0 / cell).round();
-    if (circle * cell - 360.0).abs() > SHIFT * cell {
+    if circle < 1.0 || (circle * cell - 360.0).abs() > SHIFT * cell {
         return;
     }
     let circle = circle as i64;

@@ -161,6 +161,27 @@ mod tests {
         assert_eq!([unit_m(4326), unit_m(1)], [None, None]);
     }
 
+    /// A system without a code, and one whose axes are not read, have a warning, which leaves out lengths where the cells are the
+    /// user's; known systems, Web Mercator and files without a projection have none.
+    #[test]
+    fn unknown_systems_get_a_warning() {
+        let of = |entries: Vec<[u16; 4]>, ascii: &str, has_cell| {
+            let keys = GeoKeys { entries, doubles: Vec::new(), ascii: ascii.to_owned() };
+            unknown_warning(&Georeference { corner: [0.0; 2], cell: [30.0; 2], keys }, has_cell)
+        };
+        let coded = |code| vec![[1024, 0, 1, 1], [3072, 0, 1, code]];
+        let own = of(coded(32767), "mine|", false).unwrap();
+        assert!(own.starts_with("the projection has no EPSG code: grid north"), "{own}");
+        assert!(own.contains("lengths as lengths on the ground"), "{own}");
+        assert!(!of(coded(32767), "mine|", true).unwrap().contains("lengths"));
+        let turned = of(coded(2048), "", false).unwrap();
+        assert!(turned.starts_with("EPSG:2048 is not supported: grid north"), "{turned}");
+        for code in [32618, 5070, 3857] {
+            assert_eq!(of(coded(code), "", false), None, "{code}");
+        }
+        assert_eq!(of(vec![[1024, 0, 1, 1]], "", false), None);
+    }
+
     /// Polar stereographic: about the pole the scale is that of the standard parallel, (1 + sin 71°) / 2 and (1 + sin 70°) / 2 on a
     /// sphere, within the flattening of 1/298; EPSG:3996 has 75°.
     #[test]

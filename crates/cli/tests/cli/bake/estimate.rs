@@ -8,6 +8,29 @@ use crate::{Folder, read, succeeded};
 
 const KINDS: &str = "horizon,sky-view,ellipse,scatter,light-field,brdf,brdf-factors,btf";
 
+/// Probes of curved ground are a stage of that kind alone, as long for each field.
+#[test]
+fn gpu_probes_of_curved_ground_are_counted_once() {
+    let folder = Folder::new();
+    write(&folder, "field.npy", [6, 5], |r, c| ((r * 5 + c * 3) % 7) as f32 * 0.01);
+    let words =
+        "--what visible-points,curved-ellipse --directions 32 --border periodic --curvature 1e-6";
+    let run = folder.run_str(&format!("bake field.npy -o out {words} --format npy --json t.json"));
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let report = json(&folder.path("t.json"));
+    let stages = report["estimate"]["stages"].as_array().unwrap();
+    let found: Vec<_> = stages
+        .iter()
+        .map(|stage| (stage["stage"].as_str().unwrap(), stage["work"].as_f64().unwrap()))
+        .collect();
+    let rays = 30.0 * 32.0;
+    let probes = ("curved-ellipse: probes of the base surface", 1.0);
+    for stage in [("visible-points", rays), ("curved-ellipse", rays), probes] {
+        assert!(found.contains(&stage), "{stage:?} of {found:?}");
+    }
+    assert_eq!(found.len(), 4, "{found:?}");
+}
+
 /// Every stage's work is counted before the bake. No value of a time is checked: times are finite, and 0 where nothing ran.
 #[test]
 fn gpu_an_estimate_comes_first() {

@@ -372,16 +372,18 @@ fn tiles_join_on_the_circle_in_every_order() {
             assert!((corner..corner + count as f64).contains(&first), "{chosen:?}: {corner}");
         }
     }
-    // Cells that do not divide the circle stay where they are.
-    let odd = |west: f64| {
-        let (path, mut raster) = of_longitudes(0, 2);
-        let cell = [0.7; 2];
-        raster.cell = Cell::Degrees { cell, latitude: 9.0, is_guess: false };
-        let keys = GeoKeys::of_code(4326, true);
-        raster.georeference = Some(Georeference { corner: [west, 10.0], cell, keys });
-        (path, raster)
-    };
-    assert!(joined(vec![odd(-175.0), odd(175.0)]).is_err());
+    // Cells that do not divide the circle, or are wider, stay where they are.
+    for (cell, wests) in [(0.7, [-175.0, 175.0]), (40_000.0, [0.0, 4e9])] {
+        let odd = wests.map(|west| {
+            let (path, mut raster) = of_longitudes(0, 2);
+            raster.cell = Cell::Degrees { cell: [cell; 2], latitude: 9.0, is_guess: false };
+            let keys = GeoKeys::of_code(4326, true);
+            raster.georeference =
+                Some(Georeference { corner: [west, 10.0], cell: [cell; 2], keys });
+            (path, raster)
+        });
+        assert!(joined(odd.into()).is_err(), "{cell}");
+    }
 }
 
 /// A box is found on either side of longitude 180, whichever tile is first.
