@@ -30,7 +30,7 @@ layout(push_constant) uniform BounceShadePush {
 const float LEAST_SHARE = 1.0 / 256.0;
 
 float ground_share(ivec2 at) {
-    return max(1.0 - imageLoad(sky_share, at).x, LEAST_SHARE);
+    return max(1.0 - imageLoad(sky_share, at).x, 0.0);
 }
 
 void main() {
@@ -70,6 +70,11 @@ void main() {
     for (int i = 0; i < 4; i++) {
         light += counts[i] * imageLoad(node_sum, nodes[i]).rgb;
     }
-    float share = ground_share(at) / dot(counts, shares);
-    imageStore(bounce_sum, at, vec4(light * share, 1.0));
+    // A node's own light is kept, and no ground reflects none. A share far above a tiny one of the nodes is held down.
+    float weight = counts.x + counts.y + counts.z + counts.w;
+    float around = dot(counts, shares) / weight;
+    float share = ground_share(at);
+    float more = 1.0 + (share - around) / max(around, LEAST_SHARE);
+    float ratio = share > around ? more : share / max(around, 1e-30);
+    imageStore(bounce_sum, at, vec4(light / weight * ratio, 1.0));
 }

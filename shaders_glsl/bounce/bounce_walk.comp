@@ -4,7 +4,8 @@
 // Reads: azimuths, occluders, line_blocks and bounce_ground (or grey_blocks and grey_ground).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
 // last dispatch).
-// Writes: visibility_cache (of every second node).
+// Also sky_share, where FINDS_SHARE: exit radiance under a sky of radiance 1.
+// Writes: visibility_cache (of the nodes of later bounces).
 // One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -19,9 +20,12 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// Nodes of a dispatch. 0: all. FROM_KEPT: every second one along both axes, and the last ones; they fill the visibility cache
-// for later bounces. FROM_BETWEEN: the others of the same lanes. FROM_REST: those of the other lanes.
+// Nodes of a dispatch. 0: all. FROM_KEPT: every KEPT_EACH-th along both axes, and the last ones; they fill the visibility
+// cache for later bounces. FROM_BETWEEN: the others of the same lanes. FROM_REST: those of the other lanes.
 layout(constant_id = 5) const uint FROM = 0u;
+// 2 or 4.
+layout(constant_id = 6) const int KEPT_EACH = 2;
+layout(constant_id = 7) const bool FINDS_SHARE = false;
 const uint FROM_KEPT = 1u;
 const uint FROM_BETWEEN = 2u;
 const uint FROM_REST = 3u;
@@ -35,6 +39,7 @@ layout(binding = 5, rgba32f) uniform image2D bounce_sum;
 layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray visibility_cache;
 layout(binding = 7, rgba32ui) uniform readonly uimage2DArray line_blocks;
 layout(binding = 8, rgba16ui) uniform readonly uimage2DArray grey_blocks;
+layout(binding = 9, r32f) uniform image2D sky_share;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
@@ -146,6 +151,8 @@ vec2 faces;
 vec2 passed;
 float reached;
 vec3 indirect;
+// Of all azimuths so far: the weight of directions above the horizon.
+float sky;
 
 void add_indirect(vec2 opened, vec3 light) {
     indirect += dot(faces, opened) * light;
@@ -278,6 +285,7 @@ vec4 walked(vec3 normal, float plane) {
         uvec4 kept = cache_word(steps_to, ring_weights / azimuth.wedge_rad);
         imageStore(visibility_cache, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
     }
+    sky += dot(faces, passed);
     return vec4(indirect, whole);
 }
 
@@ -296,19 +304,19 @@ void main() {
     int nodes_across = node_count(lanes, NODE_STRIDE);
     int nodes_along = node_count(steps, NODE_STRIDE);
     if (FROM == FROM_KEPT || FROM == FROM_BETWEEN) {
-        int kept_along = node_count(steps, 2 * NODE_STRIDE);
-        if (across >= node_count(lanes, 2 * NODE_STRIDE) || FROM == FROM_KEPT && along >= kept_along) {
+        int kept_along = node_count(nodes_along, KEPT_EACH);
+        if (across >= node_count(nodes_across, KEPT_EACH) || FROM == FROM_KEPT && along >= kept_along) {
             return;
         }
         own_kept_node = texel_at(across, along);
-        across = second_node(across, nodes_across);
-        along = FROM == FROM_KEPT ? second_node(along, nodes_along) : 2 * along + 1;
-        if (FROM == FROM_BETWEEN && is_second(along, nodes_along)) {
+        across = coarse_node(across, nodes_across, KEPT_EACH);
+        along = FROM == FROM_KEPT ? coarse_node(along, nodes_along, KEPT_EACH) : other_node(along, KEPT_EACH);
+        if (FROM == FROM_BETWEEN && is_coarse(along, nodes_along, KEPT_EACH)) {
             return;
         }
     } else if (FROM == FROM_REST) {
-        across = 2 * across + 1;
-        if (is_second(across, nodes_across)) {
+        across = other_node(across, KEPT_EACH);
+        if (is_coarse(across, nodes_across, KEPT_EACH)) {
             return;
         }
     }
@@ -335,6 +343,10 @@ void main() {
     if (clears == 0u) {
         sum = imageLoad(bounce_sum, own_node);
     }
+    sky = 0.0;
+    if (FINDS_SHARE && clears == 0u) {
+        sky = imageLoad(sky_share, own_node).x;
+    }
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         azimuth = azimuth_at(azimuths, k);
         azimuth_index = k;
@@ -346,4 +358,8 @@ void main() {
     // visibility cache divide by the same sum.
     vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), sum.a);
     imageStore(bounce_sum, own_node, mix(sum, light, bvec4(is_last != 0u)));
+    if (FINDS_SHARE) {
+        float share = sky / max(sum.a, 1e-30);
+        imageStore(sky_share, own_node, vec4(mix(sky, share, is_last != 0u)));
+    }
 }

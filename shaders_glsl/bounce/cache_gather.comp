@@ -1,7 +1,7 @@
 // Computes: one more bounce at every node: the radiance of each ring of its visibility cache, filled in the first
 // bounce, times the ring's weight.
-// Reads: visibility_cache, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce; every second node of
-// it is a node here; A is the divisor, the sum for whole hemispheres).
+// Reads: visibility_cache, azimuths, exit_radiance (or exit_grey), node_sum (of the bounce before; A is the divisor, the
+// sum for whole hemispheres).
 // Writes: bounce_sum (exit radiance for albedo 1).
 // One invocation is one node.
 #version 460
@@ -14,6 +14,8 @@ layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool GREY = false;
 // Grid points from node to node: 4 or 8.
 layout(constant_id = 2) const int NODE_STRIDE = 4;
+// The same of node_sum: each node here is one of its nodes.
+layout(constant_id = 3) const int SUM_STRIDE = 2;
 
 layout(binding = 0, rgba32ui) uniform readonly uimage2DArray visibility_cache;
 layout(binding = 1) uniform textureBuffer azimuths;
@@ -75,8 +77,6 @@ void main() {
             indirect += weights[ring] * leaving(grid_point_at(azimuth, here, steps_to[ring]));
         }
     }
-    ivec2 walked = ivec2(second_node(node.x, node_count(cols, NODE_STRIDE / 2)),
-                         second_node(node.y, node_count(rows, NODE_STRIDE / 2)));
-    float whole = imageLoad(node_sum, walked).a;
+    float whole = imageLoad(node_sum, ivec2(node_of(here.x, SUM_STRIDE), node_of(here.y, SUM_STRIDE))).a;
     imageStore(bounce_sum, node, vec4(indirect / max(whole, 1e-30), whole));
 }

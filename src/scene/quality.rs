@@ -120,12 +120,12 @@ settings! {
         /// Find visibility at every Nth texel of every Nth row, and light at all texels
         ///
         /// Higher is faster and blurs shadows. With `basis sh` and with `bounces`; bounces after the first use every second of
-        /// those texels.
+        /// those texels at 2 or 4, and with `bounce_engine sweep` every fourth texel at 1.
         ///
         /// Light is computed at every texel with its own normal from the nodes around it. Visibility takes a quarter or a
         /// sixteenth of the memory. RMSE on the bundled mountain under the bundled sky: 0.2 % at 2, 0.4 % at 4
-        /// (`cargo measure soft`). Bounces use the same nodes with any basis: 0.1 % RMSE of all light at 2, 0.3 %
-        /// at 4, at an albedo of 0.8 (`cargo measure bounce-table`).
+        /// (`cargo measure soft`). Bounces use the same nodes with any basis. Under a low sun, three bounces err 3 to 5 times as
+        /// much at 2 as at 1 and save a fifth of the time (benches/results/defaults.txt).
         Expert "subsample" subsample: u32 = 1, Values::OneOf(&[1, 2, 4]);
     }
 
@@ -144,7 +144,7 @@ settings! {
         /// Fewer show banding; more take time in proportion.
         ///
         /// With fewer, narrow bright features are hit in some azimuths and missed in others.
-        Expert "bounce_azimuths" azimuths: u32 = 32, Values::Whole(4..=1024);
+        Expert "bounce_azimuths" azimuths: u32 = 16, Values::Whole(4..=1024);
 
         /// Skip the last bounces below this share of the direct light's energy, 0 to 1, default 1/65536; with `bounces`
         ///

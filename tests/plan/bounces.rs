@@ -94,6 +94,19 @@ fn bounces_at_nodes() {
             }
         }
     }
+    // Walks from every texel find the share of ground, and keep a cache of every fourth node. The other engines do neither.
+    let plan = drawn(&scene, &quality(BounceEngine::Sweep, 3, 1), ROOMY);
+    let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
+    assert_eq!(bytes("visibility_cache"), nodes(4) * 8 * 16);
+    assert_eq!(["bounce_shade", "cache_gather"].map(|name| count(&plan, name)), [2, 2]);
+    assert!(
+        plan.find("node_sum").is_none() && !labels(&plan).join(" ").contains("sky_shade bounce")
+    );
+    assert_eq!(missing_barriers(&plan.passes), vec![]);
+    for engine in [BounceEngine::BruteForce, BounceEngine::Pyramid] {
+        let plan = drawn(&scene, &quality(engine, 3, 1), ROOMY);
+        assert!(count(&plan, "bounce_shade") == 0 && plan.find("sky_share").is_none());
+    }
     // With many azimuths the caches take most of the memory.
     let few = quality(BounceEngine::Sweep, 3, 2);
     let walks = Quality { bounces: Bounces { azimuths: 128, ..few.bounces }, ..few };

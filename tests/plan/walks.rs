@@ -6,8 +6,12 @@ use ridgelight::scene::{BounceEngine, Bounces, Fuse, Lights, Quality, Scene};
 use crate::{flat, under_sky};
 
 fn drawn(scene: &Scene, quality: Quality, keeps_horizons: bool) -> Plan {
+    drawn_within(&Limits::lavapipe(), scene, quality, keeps_horizons)
+}
+
+fn drawn_within(limits: &Limits, scene: &Scene, quality: Quality, keeps_horizons: bool) -> Plan {
     let wanted = Picture { keeps_horizons, ..Picture::default() };
-    plan::picture(scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+    plan::picture(scene, &quality, limits, wanted).expect("a plan")
 }
 
 fn walked(count: u32, azimuths: u32) -> Quality {
@@ -20,8 +24,8 @@ fn labels(plan: &Plan) -> Vec<String> {
     plan.passes.iter().map(plan::Pass::label).filter(|l| l.contains("bounce")).collect()
 }
 
-/// A batch an axis, each swept and walked. A second bounce sweeps again where batches share a lattice, and only
-/// walks where each batch keeps its own. Blocks for rays are not made.
+/// A batch an axis, each swept and walked. Later bounces read caches. Where those have no room, they sweep again where batches
+/// share a lattice, and only walk where each batch keeps its own. Blocks for rays are made for nodes alone.
 #[test]
 fn sweeps_and_walks() {
     let mut scene = under_sky(flat(9, 14));
@@ -39,10 +43,19 @@ fn sweeps_and_walks() {
     assert_eq!([of(&one, "horizon_sweep"), of(&one, "bounce_walk")], [2, 2]);
     assert_eq!(one.azimuths.len(), 16);
     assert!(one.find("ground").is_none() && one.edit_passes.is_empty());
-    let [shared, kept] = [false, true].map(|keeps| drawn(&scene, walked(3, 8), keeps));
+    let [cached, kept] = [false, true].map(|keeps| drawn(&scene, walked(3, 8), keeps));
+    for plan in [&cached, &kept] {
+        // Nodes with a cache, the others of their lanes, and the rest.
+        assert_eq!([of(plan, "horizon_sweep"), of(plan, "bounce_walk")], [2, 6]);
+        assert_eq!(of(plan, "cache_gather"), 2);
+    }
+    // A layer an azimuth.
+    let few_layers = Limits { image_layers: 7, ..Limits::lavapipe() };
+    let [shared, alone] =
+        [false, true].map(|keeps| drawn_within(&few_layers, &scene, walked(3, 8), keeps));
     assert_eq!([of(&shared, "horizon_sweep"), of(&shared, "bounce_walk")], [6, 6]);
-    assert_eq!([of(&kept, "horizon_sweep"), of(&kept, "bounce_walk")], [2, 6]);
-    for plan in [&one, &shared, &kept] {
+    assert_eq!([of(&alone, "horizon_sweep"), of(&alone, "bounce_walk")], [2, 6]);
+    for plan in [&one, &cached, &kept, &shared, &alone] {
         assert_eq!(missing_barriers(&plan.passes), vec![]);
     }
     // Slopes alone are not enough.

@@ -6,6 +6,9 @@ use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::nodes::Nodes;
 use crate::scene::{BounceEngine, Quality};
 
+/// Least stride of the nodes of later bounces.
+const LEAST_LATER_STRIDE: u32 = 4;
+
 /// Nodes, and the irradiance there.
 #[derive(Clone, Copy)]
 pub(crate) struct NodeSum {
@@ -23,23 +26,23 @@ impl NodeSum {
 /// Where bounces are found, and the images for them.
 #[derive(Clone, Copy)]
 pub(crate) struct BounceNodes {
-    /// Nodes of the first bounce.
-    pub first: NodeSum,
-    /// Nodes of later bounces, where there are any: every second one of the first bounce's, since later bounces
-    /// are weaker and smoother.
-    pub later: Option<NodeSum>,
+    /// Nodes of the first bounce; none where it is found at every grid point.
+    pub first: Option<NodeSum>,
+    /// Nodes of later bounces, where there are any, with sums in turn. They are fewer than those of the first bounce, since
+    /// later bounces are weaker and smoother.
+    later: Option<[NodeSum; 2]>,
     /// Irradiance of a sky of radiance 1, at every grid point.
     pub sky_share: ResourceId,
     /// Whether the bounces find it themselves, along their own azimuths.
-    pub finds_share: bool,
+    finds_share: bool,
     /// The visibility cache: what the first bounce found at the later bounces' nodes, one layer per azimuth.
     /// Each holds the positions of four rings, and its weight.
-    pub visibility_cache: Option<ResourceId>,
+    visibility_cache: Option<ResourceId>,
 }
 
 impl BounceNodes {
-    /// None where every grid point is a node, or without bounces. `sky_share` is that of other lights; walks
-    /// find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and
+    /// None where all bounces are found at every grid point, or without bounces. `sky_share` is that of other lights;
+    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and
     /// it takes at most a quarter of the remaining budget.
     pub(crate) fn make(
         builder: &mut Builder,
@@ -50,7 +53,9 @@ impl BounceNodes {
         notes: &mut Vec<String>,
     ) -> Option<Self> {
         let stride = quality.subsample;
-        if stride == 1 || count == 0 {
+        let is_walked = quality.bounces.engine == BounceEngine::Sweep;
+        // The other engines are exact, or find a share of the sky with no sweep.
+        if count == 0 || stride == 1 && (count == 1 || !is_walked) {
             return None;
         }
         let mut sum = |name: &str, stride: u32| {
@@ -62,9 +67,13 @@ impl BounceNodes {
                 sum: builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false),
             }
         };
-        let first = sum("node_sum", stride);
-        let later = (count > 1).then(|| sum("later_node_sum", 2 * stride));
-        let is_walked = quality.bounces.engine == BounceEngine::Sweep;
+        let first = (stride > 1).then(|| sum("node_sum", stride));
+        let later_stride = (2 * stride).max(LEAST_LATER_STRIDE);
+        let later = (count > 1).then(|| {
+            let one = sum("later_node_sum", later_stride);
+            // Each reads the sum of the bounce before.
+            [one, if count > 2 { sum("other_node_sum", later_stride) } else { one }]
+        });
         let shared = sky_share.filter(|_| !is_walked);
         let share = || {
             let extent = [size[0], size[1], 1];
@@ -74,7 +83,7 @@ impl BounceNodes {
         let kept = later.filter(|_| is_walked);
         let visibility_cache = kept.and_then(|later| {
             let layers = quality.bounces.azimuths;
-            let bytes = later.count(size) * u64::from(layers) * 16;
+            let bytes = later[0].count(size) * u64::from(layers) * 16;
             let room = (limits.memory_budget.saturating_sub(builder.bytes()) / 4)
                 .min(limits.allocation_bytes);
             if bytes > room || layers > limits.image_layers {
@@ -86,11 +95,27 @@ impl BounceNodes {
                 ));
                 return None;
             }
-            let [across, along] = later.nodes.size(size);
+            let [across, along] = later[0].nodes.size(size);
             let extent = [across, along, layers];
             let format = Format::Rgba32Uint;
             Some(builder.image("visibility_cache", Owner::Internal, format, extent, true))
         });
         Some(Self { first, later, sky_share, finds_share: shared.is_none(), visibility_cache })
+    }
+
+    /// Nodes of bounce `k`, from 1; none where it is found at every grid point.
+    pub(crate) fn of_bounce(&self, k: usize) -> Option<NodeSum> {
+        self.later.filter(|_| k > 1).map(|later| later[k % 2]).or(self.first)
+    }
+
+    /// The share of the sky that bounces find by shading, and that which walks from every grid point find.
+    pub(crate) fn own_share(&self) -> [Option<ResourceId>; 2] {
+        let own = Some(self.sky_share).filter(|_| self.finds_share);
+        [own.filter(|_| self.first.is_some()), own.filter(|_| self.first.is_none())]
+    }
+
+    /// The visibility cache, and its nodes.
+    pub(crate) fn cached(&self) -> Option<(ResourceId, Nodes)> {
+        Some((self.visibility_cache?, self.later?[0].nodes))
     }
 }

@@ -19,15 +19,17 @@ pub(crate) struct Swept {
     /// Azimuths used for bounces: the first, and the one after the last.
     pub begin: u32,
     pub end: u32,
-    /// The visibility cache of every second node.
-    pub visibility_cache: Option<ResourceId>,
+    /// The visibility cache, and the nodes that have one.
+    pub visibility_cache: Option<(ResourceId, Nodes)>,
+    /// Where walks from every grid point find the share of the sky.
+    pub sky_share: Option<ResourceId>,
 }
 
 /// Which nodes a dispatch walks from; numbered as in the shader.
 #[derive(Clone, Copy, PartialEq)]
 enum From {
     All,
-    /// Every second node along both axes, and the last ones. They write the visibility cache.
+    /// The nodes of later bounces. They write the visibility cache.
     Kept,
     /// The other nodes of the same lanes.
     Between,
@@ -54,29 +56,33 @@ pub(crate) fn plan(
     let count = azimuths.len() as u32;
     let NodeSum { nodes, sum } = bounce.found_at();
     let [along, across] = nodes.size([axis.steps, axis.lanes]);
-    let second = Nodes { stride: 2 * nodes.stride };
-    let [kept_along, kept] = second.size([axis.steps, axis.lanes]);
-    let dispatches = match swept.visibility_cache {
-        None => vec![(From::All, "", [across, along])],
-        Some(_) => vec![
+    let (mut dispatches, mut kept_each) = (vec![(From::All, "", [across, along])], 2);
+    if let Some((_, later)) = swept.visibility_cache {
+        let [kept_along, kept] = later.size([axis.steps, axis.lanes]);
+        kept_each = later.stride / nodes.stride;
+        dispatches = vec![
             (From::Kept, " kept", [kept, kept_along]),
             (From::Between, " between", [kept, along - kept_along]),
             (From::Rest, " rest", [across - kept, along]),
-        ],
-    };
+        ];
+    }
     let (line_blocks, block_layers) = swept.line_blocks.of(axis);
-    let bound = [
+    let mut bound = vec![
         ("azimuths", swept.azimuths),
         ("occluders", swept.occluders),
         (LineBlocks::binding(bounce.grey), line_blocks),
         swept.ground.bound(),
         ("bounce_sum", sum),
     ];
+    bound.extend(swept.sky_share.map(|share| ("sky_share", share)));
     for (from, which, [across, along]) in dispatches.iter().filter(|d| !d.2.contains(&0)) {
         let found = u64::from(*along) * u64::from(*across);
-        let mut bound = bound.to_vec();
+        let mut bound = bound.clone();
         bound.extend(
-            swept.visibility_cache.filter(|_| *from == From::Kept).map(|c| ("visibility_cache", c)),
+            swept
+                .visibility_cache
+                .filter(|_| *from == From::Kept)
+                .map(|c| ("visibility_cache", c.0)),
         );
         let bytes_an_azimuth = if *from == From::Kept { 18 } else { 2 };
         let pass = builder.pass(
@@ -88,6 +94,8 @@ pub(crate) fn plan(
                 grey: bounce.grey,
                 node_stride: nodes.stride as i32,
                 from: *from as u32,
+                kept_each: kept_each as i32,
+                finds_share: swept.sky_share.is_some(),
             },
             &format!("{part}{which}"),
             format!("{}, visible ground along {count} azimuths", bounce.why),

@@ -197,7 +197,7 @@ impl Bouncing {
             },
             grey: self.grey,
             sum: self.sum,
-            at_nodes: self.at_nodes.map(|at| at.later.filter(|_| k > 1).unwrap_or(at.first)),
+            at_nodes: self.at_nodes.and_then(|at| at.of_bounce(k)),
         };
         let size = [scene.field.cols() as u32, scene.field.rows() as u32];
         let blocks = || blocks.expect("made for engines that read cells and ground");
@@ -206,8 +206,9 @@ impl Bouncing {
             Engine::Sweep(ground, line_blocks) => {
                 let over = swept.expect("swept for walks");
                 let WalkedOver { sweeping, batches } = over;
-                match self.at_nodes.and_then(|at| Some((at.first, at.visibility_cache?))) {
-                    Some((walked, visibility_cache)) if k > 1 => {
+                match self.at_nodes.and_then(|at| at.cached()) {
+                    Some((visibility_cache, _)) if k > 1 => {
+                        let before = self.found_at(k - 1);
                         let first = batches[0].first;
                         let circle = (sweeping.azimuths, first..first + self.azimuths);
                         let field = (size, scene.surface.border);
@@ -215,7 +216,7 @@ impl Bouncing {
                             builder,
                             field,
                             circle,
-                            (&walked, visibility_cache),
+                            (&before, visibility_cache),
                             &bounce,
                         );
                     }
@@ -232,11 +233,17 @@ impl Bouncing {
                 gather(builder, &scene.field, how, &bounce, ids);
             }
         }
-        if let Some(at) = &self.at_nodes {
+        if let Some(at) = self.at_nodes.filter(|_| bounce.at_nodes.is_some()) {
             let ids = [blocks().images.ground, at.sky_share];
             bounce_shade::plan(builder, &scene.field, &bounce, ids);
         }
         (self.sum, self.exits[k - 1])
+    }
+
+    /// Where bounce `k` is found, from 1.
+    fn found_at(&self, k: usize) -> NodeSum {
+        let every = NodeSum { nodes: Nodes { stride: 1 }, sum: self.sum };
+        self.at_nodes.and_then(|at| at.of_bounce(k)).unwrap_or(every)
     }
 
     /// The diffuse exit radiance after bounce `k`; 0 is direct light. None after the last bounce.
@@ -252,7 +259,8 @@ impl Bouncing {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());
-        add("subsample", self.at_nodes.map_or(1, |at| at.first.nodes.stride).to_string());
+        let first = self.at_nodes.and_then(|at| at.first);
+        add("subsample", first.map_or(1, |first| first.nodes.stride).to_string());
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::BruteForce,
             Engine::Sweep(..) => BounceEngine::Sweep,
@@ -295,6 +303,7 @@ fn walk(
     if k == 1 && sweeping.has_own_lattices {
         sweeping.plan_all(builder, &first);
     }
+    let [shaded, walked] = at_nodes.map_or([None; 2], |at| at.own_share());
     for (batch, part) in &first {
         let occluders = sweeping.occluders(batch).expect("kept for walks");
         // A lattice of its own still holds the first bounce's sweep.
@@ -304,13 +313,13 @@ fn walk(
             sweeping.plan_all(builder, &[(*batch, part.clone())]);
         }
         let field = (scene.surface.border, scene.field.cell_m());
-        if let Some(at) = at_nodes.filter(|at| at.finds_share && k == 1) {
+        if let Some(share) = shaded.filter(|_| k == 1) {
             let images = sky_shade::Images {
                 lane_heights: sweeping.lane_heights(batch),
                 lane_buffer: sweeping.lane_buffer(batch),
                 lattice: sweeping.lattice(batch),
                 azimuths: sweeping.azimuths,
-                sky_sum: Some(at.sky_share),
+                sky_sum: Some(share),
                 environment: None,
                 specular: None,
                 edited: None,
@@ -328,7 +337,8 @@ fn walk(
             line_shift: sweeping.sweep.line_shift(),
             begin,
             end,
-            visibility_cache: at_nodes.and_then(|at| at.visibility_cache),
+            visibility_cache: at_nodes.and_then(|at| at.cached()),
+            sky_share: walked.filter(|_| k == 1),
         };
         let groups = line_blocks.groups(batch);
         for azimuths in &groups {

@@ -5,12 +5,12 @@ use crate::scene::Border;
 use std::ops::Range;
 
 /// One more bounce at every node, from the visibility cache that the first bounce left along some of the
-/// `azimuths` where it was `walked`, at every second node.
+/// `azimuths`. `before`: the sum of the bounce before, whose nodes include these.
 pub(crate) fn plan(
     builder: &mut Builder,
     (size, border): ([u32; 2], Border),
     (azimuths, circle): (ResourceId, Range<u32>),
-    (walked, visibility_cache): (&NodeSum, ResourceId),
+    (before, visibility_cache): (&NodeSum, ResourceId),
     bounce: &Bounce,
 ) {
     let at = bounce.found_at();
@@ -22,6 +22,7 @@ pub(crate) fn plan(
             border: border as u32,
             grey: bounce.grey,
             node_stride: at.nodes.stride as i32,
+            sum_stride: before.nodes.stride as i32,
         },
         &bounce.name,
         format!("{}, by the visibility cache of {count} azimuths", bounce.why),
@@ -36,7 +37,7 @@ pub(crate) fn plan(
             ("visibility_cache", visibility_cache),
             ("azimuths", azimuths),
             (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
-            ("node_sum", walked.sum),
+            ("node_sum", before.sum),
             ("bounce_sum", at.sum),
         ],
         at.count(size) * 32 + visible * (16 + if bounce.grey { 16 } else { 64 }),

@@ -154,8 +154,8 @@ pub(crate) fn bounced_light() -> Vec<Case> {
     ]
 }
 
-/// Bounces at every second or fourth texel, the last ones among them: every engine, colours and grey, visibility
-/// caches of one batch and of several.
+/// Bounces at every second or fourth texel, or from the second on at every fourth, the last ones among them: every engine,
+/// colours and grey, visibility caches of one batch and of several.
 pub(crate) fn node_cases() -> Vec<Case> {
     let case = |name, (rows, cols), border, (engine, count, subsample)| {
         let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
@@ -180,6 +180,9 @@ pub(crate) fn node_cases() -> Vec<Case> {
     vec![
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("later walks at nodes, colours", (11, 14), Border::Open, (Sweep, 3, 1)),
+        case("later walks at nodes, grey", (10, 13), Border::Periodic, (Sweep, 3, 1)),
+        case("later walks at nodes, outside black", (2, 9), Border::Plane, (Sweep, 2, 1)),
         case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
         case("every visible interval at nodes", (6, 7), Border::Open, (BruteForce, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),

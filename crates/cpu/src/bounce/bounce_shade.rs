@@ -19,14 +19,19 @@ pub fn bounce_shade(
 ) -> Rgb {
     let size = [heights.cols as u32, heights.rows as u32];
     let across = nodes.count(size[0]);
-    let share = |col: u32, row: u32| {
-        (1.0 - sky_share[row as usize * heights.cols + col as usize]).max(LEAST_SHARE)
-    };
-    let (mut sum, mut shares) = ([0.0; 3], 0.0);
+    let share =
+        |col: u32, row: u32| (1.0 - sky_share[row as usize * heights.cols + col as usize]).max(0.0);
+    let (mut sum, mut around) = ([0.0; 3], 0.0);
     for ([x, y], weight) in nodes_around(heights, nodes, [col, row]) {
         let node = light[(y * across + x) as usize];
         sum = [0, 1, 2].map(|c| sum[c] + weight * node[c]);
-        shares += weight * share(nodes.place(x, size[0]), nodes.place(y, size[1]));
+        around += weight * share(nodes.place(x, size[0]), nodes.place(y, size[1]));
     }
-    sum.map(|s| s * share(col as u32, row as u32) / shares)
+    let own = share(col as u32, row as u32);
+    let ratio = match own > around {
+        true => 1.0 + (own - around) / around.max(LEAST_SHARE),
+        false if around > 0.0 => own / around,
+        false => 0.0,
+    };
+    sum.map(|s| s * ratio)
 }

@@ -104,6 +104,8 @@ pub struct BounceError {
     pub sum: Rgb,
     /// Exit radiance for albedo 1.
     pub light: Rgb,
+    /// Of the weight of a whole hemisphere.
+    pub whole: f64,
 }
 
 impl BounceError {
@@ -154,12 +156,13 @@ impl BounceError {
         let count = all.len() as f64;
         let relative = count * slice / whole + (count + 6.0) * EPSILON;
         let light = [0, 1, 2].map(|c| sum_off[c] / whole + relative * sum[c].abs() / whole);
-        Self { sum: sum_off, light }
+        Self { sum: sum_off, light, whole: relative * whole }
     }
 
     /// Of light that is so many times as bright.
     pub fn times(&self, scale: f64) -> Self {
-        Self { sum: self.sum.map(|s| scale * s), light: self.light.map(|l| scale * l) }
+        let [sum, light] = [self.sum, self.light].map(|of| of.map(|v| scale * v));
+        Self { sum, light, ..*self }
     }
 }
 

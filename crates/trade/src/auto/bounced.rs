@@ -51,9 +51,13 @@ impl BouncedLight {
         if drawn == 0 {
             return [0.0, 0.0, 0.0, left_out];
         }
-        let has_levels = engine(quality) == BounceEngine::Pyramid;
-        let stride = f64::from(quality.subsample);
-        let nodes = if quality.subsample == 1 { 0.0 } else { stride / 2.0 };
+        let engine = engine(quality);
+        let has_levels = engine == BounceEngine::Pyramid;
+        let nodes = match quality.subsample {
+            1 if engine == BounceEngine::Sweep && drawn > 1 => LATER_NODES,
+            1 => 0.0,
+            stride => f64::from(stride) / 2.0,
+        };
         let azimuths = 32.0 / f64::from(quality.bounces.azimuths);
         [f64::from(u8::from(has_levels)), azimuths, nodes, left_out]
     }
@@ -68,6 +72,10 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
     }
 }
 
+/// Error of later bounces at every fourth texel, over that of all bounces at every second and later ones at every fourth. Source:
+/// rows of relief x 3 in `benches/results/defaults.txt`, low sun, of the squares beyond those of later bounces at every texel.
+const LATER_NODES: f64 = 0.2;
+
 /// ns per azimuth and texel: of a walk, of a march per texel of the side, of a gather; on lavapipe.
 /// Source: "ms" of one bounce, 1×, of `cargo measure bounce-table`
 /// (`benches/results/bounce_table.txt`, sub-sampled bounces) over 32 · 128² · 10⁻⁶, for brute force
@@ -75,8 +83,8 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
 const WALK: f64 = 70.0;
 const MARCH: f64 = 4.8;
 const GATHER: f64 = 330.0;
-/// Time of a later, sub-sampled bounce, which reads the first bounce's visibility cache, over that
-/// of a walk at every texel: sweep, 4×, same file, (three bounces - one) / 2 over one bounce's 1×.
+/// Time of a later bounce, which reads the first bounce's visibility cache, over that
+/// of a walk at every texel: sweep, 1×, same file, (three bounces - one) / 2 over one bounce.
 const CAST: f64 = 0.041;
 
 /// Work of walks, marches and gathers; only one of them is above 0.
@@ -94,7 +102,11 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     };
     let stride = quality.subsample;
     // Sweep and line blocks are those of every texel: "over 1×" of one bounce, sweep; every eighth as every fourth.
-    let walked = if stride == 2 { 0.7 } else { 0.42 };
+    let walked = match stride {
+        1 => 1.0,
+        2 => 0.7,
+        _ => 0.42,
+    };
     let later = nodes(if stride == 1 { 1 } else { 2 * stride });
     let found = nodes(stride) + later * (drawn - 1.0);
     let mut all = [0.0; ENGINES.len()];
@@ -104,7 +116,6 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     match engine(quality) {
         BounceEngine::BruteForce => all[1] = azimuths * found * MARCH * side,
         BounceEngine::Pyramid => all[2] = azimuths * found * GATHER,
-        _ if stride == 1 => all[0] = azimuths * found * WALK,
         _ => all[0] = azimuths * WALK * (walked + CAST * (drawn - 1.0)),
     }
     all
@@ -117,7 +128,7 @@ mod tests {
 
     /// A share of 0.1 and three requested bounces: without any, 1 + 0.1 + 0.01 of the first is
     /// omitted; with one, 0.1 + 0.01. Half the azimuths double the error; every fourth texel has
-    /// twice the error of every second, every texel none.
+    /// twice the error of every second, and later bounces alone a fifth.
     #[test]
     fn finer_bounces_err_less() {
         let light = BouncedLight { albedo: 0.5, share: 0.1 };
@@ -127,9 +138,11 @@ mod tests {
         };
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         // ½ + ¼ + ⅛ of the energy are all.
+        // One bounce is found at every texel.
+        assert_eq!(of(0.5, 32, 1)[2], 0.0);
         assert!(of(0.9, 32, 1)[..3] == [0.0; 3] && near(of(0.9, 32, 1)[3], 1.11));
         assert!(near(of(0.5, 32, 1)[3], 0.11) && near(of(0.2, 32, 1)[3], 0.01));
-        assert_eq!(of(0.0, 32, 1), [0.0, 1.0, 0.0, 0.0]);
+        assert_eq!(of(0.0, 32, 1), [0.0, 1.0, 0.2, 0.0]);
         assert_eq!(of(0.0, 16, 2), [0.0, 2.0, 1.0, 0.0]);
         assert_eq!(of(0.0, 64, 4), [0.0, 0.5, 2.0, 0.0]);
         let pyramid = Bounces { count: 3, engine: BounceEngine::Pyramid, ..Bounces::default() };

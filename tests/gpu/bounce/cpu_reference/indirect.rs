@@ -14,7 +14,7 @@ use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::line_blocks::{Ground, MOST_LEVEL};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
+use ridgelight_cpu::shared::bounced::{Along, light_and_weight, radiance};
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{
     BounceError, Gathered, Land, Slices, block_error, device_level, device_spline, march_error,
@@ -22,7 +22,7 @@ use ridgelight_cpu::tolerance::{
 };
 use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
 
-use super::nodes::{casts, places};
+use super::nodes::{casts, kept_nodes, places};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::horizon::cpu_reference::pyramid::{numbers, table_pairs};
 
@@ -298,7 +298,8 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The sum so far; after the last azimuths, the bounced light.
+/// The sum so far; after the last azimuths, the bounced light. The share of the sky where a walk finds it: what white ground
+/// does not bounce.
 pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("BounceWalkPush", "azimuth_count");
     const CLEARS: usize = offset("BounceWalkPush", "clears");
@@ -315,7 +316,7 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let is_last = word(IS_LAST) == 1;
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
-    let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
+    let kept = self::places(run, kept_nodes(pass));
     let places = places(run, nodes);
     let from = constant(pass, "from");
     // 0: all nodes; 1: those that fill the visibility cache; 2: the others of their lanes; 3: those of the other lanes.
@@ -331,19 +332,42 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     };
     let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
     let settings = (Some(Fuse::AimedNearest), constant(pass, "line_shift"));
-    let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
-        let of = |[row, col]: &[usize; 2]| walked_along(swept, &exit, *col as i32, *row as i32).0;
-        places.iter().map(of).collect()
-    });
-    let of = |i: usize| {
-        let slices = run.slices(places[i], wedge, brightest);
-        let off = BounceError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
+    let share = match constant(pass, "finds_share") {
+        0 => None,
+        _ => Some(run.floats(pass, "sky_share").expect("written")),
+    };
+    let walked = |exit: &[[f32; 3]]| -> Vec<_> {
+        run.swept(range.clone(), settings, |swept| {
+            let of =
+                |[row, col]: &[usize; 2]| walked_along(swept, exit, *col as i32, *row as i32).0;
+            places.iter().map(of).collect()
+        })
+    };
+    let bounced = walked(&exit);
+    let white = share.is_some().then(|| walked(&vec![[1.0; 3]; exit.len()]));
+    let of = |along: &[Along], place: [usize; 2], brightest: f64| {
+        let slices = run.slices(place, wedge, brightest);
+        let off = BounceError::of(along, |_, cast| walk_error(wedge, cast), &slices);
+        let (light, weight) = light_and_weight(along);
         match is_last {
-            true => (radiance(&walked[i]), off.light),
-            false => (light_and_weight(&walked[i]).0, off.sum),
+            true => (radiance(along), off.light, [1.0, off.whole / weight]),
+            false => (light, off.sum, [weight, off.whole]),
         }
     };
-    let mut pairs = each(&got, of, [range.len(), across]);
+    let at = [range.len(), across];
+    let of_light = |i: usize| {
+        let (want, off, _) = of(&bounced[i], places[i], brightest);
+        (want, off)
+    };
+    let mut pairs = each(&got, of_light, at);
+    if let (Some(share), Some(white)) = (share, white) {
+        let of_share = |i: usize| {
+            let (ground, off, [whole, whole_off]) = of(&white[i], places[i], 1.0);
+            (ground.map(|ground| whole - ground), off.map(|off| off + whole_off))
+        };
+        let got: Vec<[f64; 3]> = share.iter().map(|v| [f64::from(*v); 3]).collect();
+        pairs.extend(each(&got, of_share, at));
+    }
     let walked: HashSet<[usize; 2]> =
         (0..places.len()).filter(|i| is_walked(*i)).map(|i| [i / across, i % across]).collect();
     pairs.retain(|pair| walked.contains(&[pair.at[1], pair.at[2]]));

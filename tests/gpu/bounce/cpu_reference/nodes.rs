@@ -27,11 +27,16 @@ pub(crate) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
     (0..across * along).map(|i| place(i).map(|n| n as usize)).collect()
 }
 
+/// The nodes of which a walk keeps visibility caches.
+pub(crate) fn kept_nodes(pass: &Pass) -> Nodes {
+    Nodes { stride: constant(pass, "kept_each") * constant(pass, "node_stride") }
+}
+
 /// The visibility caches that a walk keeps of some azimuths, if any: from ground of radiance 1 they bounce as much as
 /// the walk, but for half a part of each ring's weight, and likewise for radiances equal to columns and rows, which
 /// lie where their mean does, within a texel: it stands half a step away, and across it as much again.
 pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
-    let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
+    let places = &places(run, kept_nodes(pass));
     let begin = pushed(pass, const { offset("BounceWalkPush", "begin") }) as usize;
     let Some(sets) = visibility_caches(run, pass, begin, places) else {
         return Vec::new();
@@ -115,9 +120,9 @@ pub(crate) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         None => run.exit(pass),
     };
     let texels = run.floats(pass, "bounce_sum").expect("written");
-    let walked = Nodes { stride: constant(pass, "node_stride") / 2 };
+    let before = Nodes { stride: constant(pass, "sum_stride") };
     let sums = run.floats(pass, "node_sum").expect("bound");
-    let wholes: HashMap<[usize; 2], f64> = self::places(run, walked)
+    let wholes: HashMap<[usize; 2], f64> = self::places(run, before)
         .into_iter()
         .zip(sums.chunks_exact(4).map(|texel| f64::from(texel[3])))
         .collect();

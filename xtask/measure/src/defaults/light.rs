@@ -4,7 +4,9 @@ use std::path::Path;
 
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
-use ridgelight::scene::{Border, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene};
+use ridgelight::scene::{
+    Border, BounceEngine, Bounces, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene, Sun,
+};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_trade::error::HorizonError;
@@ -27,12 +29,18 @@ pub const PICKS: usize = 256;
 /// Turns of most settings, and of those that take about ten times as long as the default or longer.
 pub const TURNS: usize = 7;
 const FEW_TURNS: usize = 1;
+/// Bounces, the albedo of the ground under them, and azimuths of the exact ones.
+pub const BOUNCES: u32 = 3;
+pub const BOUNCED_ALBEDO: f32 = 0.5;
+pub const FINE_BOUNCE_AZIMUTHS: u32 = 64;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Sky,
     Environment,
     Key,
+    /// Light with what the ground reflects onto itself.
+    Bounces,
     /// Horizons alone, without light.
     Horizons,
 }
@@ -45,6 +53,7 @@ impl Kind {
             (Self::Sky, _) => [0.1, 0.0],
             (Self::Environment, _) => [0.7, 0.0],
             (Self::Key, _) => [0.3, 0.0],
+            (Self::Bounces, _) => [0.5, 0.0],
             (Self::Horizons, _) => [0.05, 2.0],
         }
     }
@@ -74,12 +83,44 @@ fn key(name: &'static str, width: f64, elevations: [f64; 2]) -> Light {
     Light { name, kind: Kind::Key, lights: Lights { keys: vec![key], ..Lights::default() } }
 }
 
+/// The same for bounces, with every border.
+fn of_bounces() -> Vec<Mode> {
+    let mode = |flags, turns, subsample, bounces: Bounces| {
+        let bounces = Bounces { count: BOUNCES, ..bounces };
+        Mode { flags, quality: Quality { subsample, bounces, ..Quality::default() }, turns }
+    };
+    let default = Bounces::default();
+    let of = |azimuths| Bounces { azimuths, ..default };
+    let by = |engine| Bounces { engine, ..default };
+    let own = Quality::default().subsample;
+    vec![
+        mode("default", TURNS, own, default),
+        mode("--subsample 2", TURNS, 2, default),
+        mode("--subsample 4", TURNS, 4, default),
+        mode("--bounce-azimuths 8", TURNS, own, of(8)),
+        mode("--bounce-azimuths 12", TURNS, own, of(12)),
+        mode("--bounce-azimuths 32", TURNS, own, of(32)),
+        mode("--bounce-azimuths 64", TURNS, own, of(64)),
+        mode("--subsample 2 --bounce-azimuths 32", TURNS, 2, of(32)),
+        mode(
+            "--subsample 2 --bounce-engine brute-force",
+            FEW_TURNS,
+            2,
+            by(BounceEngine::BruteForce),
+        ),
+        mode("--bounce-engine brute-force", FEW_TURNS, own, by(BounceEngine::BruteForce)),
+    ]
+}
+
 /// The default, which is first, and the settings that it is compared with. With border `plane` these are all. The other borders
 /// have those that may be faster, and the other fuses.
 pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
     let default = Quality::default();
     let swept = |flags, quality| Mode { flags, quality, turns: TURNS };
     let slow = |flags, quality| Mode { flags, quality, turns: FEW_TURNS };
+    if kind == Kind::Bounces {
+        return of_bounces();
+    }
     // A key light has slices of its own in place of azimuths. Fewer or more horizons are another output.
     let [fewer, more] = match kind {
         Kind::Key => [
@@ -90,7 +131,7 @@ pub fn modes(kind: Kind, border: Border) -> Vec<Mode> {
             Some(swept("--azimuths 16", Quality { azimuths: 16, ..default })),
             Some(swept("--azimuths 64", Quality { azimuths: 64, ..default })),
         ],
-        Kind::Horizons => [None, None],
+        Kind::Bounces | Kind::Horizons => [None, None],
     };
     let nearest = Quality { fuse: Fuse::AimedNearest, ..default };
     let mut all = vec![
@@ -124,9 +165,16 @@ pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
         let lights = Lights { environment: Some(environment), ..Lights::default() };
         Light { name, kind: Kind::Environment, lights }
     };
-    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let sun = Sun {
+        azimuth_rad: 135_f64.to_radians(),
+        elevation_rad: 20_f64.to_radians(),
+        diameter_rad: 0.53_f64.to_radians(),
+        irradiance: [3.0; 3],
+    };
+    let low_sun = Lights { suns: vec![sun], sky: Some([0.1; 3]), ..Lights::default() };
     let mut all = vec![
-        Light { name: "sky", kind: Kind::Sky, lights: sky },
+        Light { name: "sky", kind: Kind::Sky, lights: sky() },
         under("bundled environment", inputs::sky(0.0)?),
     ];
     if let Some(folder) = folder {
@@ -135,6 +183,8 @@ pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
     all.extend([
         key("key light 4° wide, 20° to 30° high", 4.0, [20.0, 30.0]),
         key("key light 50° wide, 4° to 16° high", 50.0, [4.0, 16.0]),
+        Light { name: "sky and bounces", kind: Kind::Bounces, lights: sky() },
+        Light { name: "low sun, sky and bounces", kind: Kind::Bounces, lights: low_sun },
         Light { name: "horizons", kind: Kind::Horizons, lights: Lights::default() },
     ]);
     Ok(all)
@@ -168,6 +218,14 @@ impl Light {
                 let is_periodic = scene.surface.border == Border::Periodic;
                 let azimuths = if is_periodic { PERIODIC_AZIMUTHS } else { FINE_AZIMUTHS };
                 Exact::Light(exact_light(gpu, scene, azimuths)?)
+            }
+            Kind::Bounces => {
+                let engine = BounceEngine::BruteForce;
+                let azimuths = FINE_BOUNCE_AZIMUTHS;
+                let bounces =
+                    Bounces { count: BOUNCES, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
+                let finer = Quality { azimuths: FINE_AZIMUTHS, subsample: 1, bounces, ..exact };
+                Exact::Light(drawn(gpu, scene, &finer, 0)?.light)
             }
             Kind::Key => {
                 let finer = Quality { sun_azimuths: FINER * exact.sun_azimuths, ..exact };

@@ -9,13 +9,16 @@ mod summary;
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::scene::{Border, Quality, Scene};
+use ridgelight::scene::{Albedo, Border, Quality, Scene};
 
 use crate::common::args::Args;
 use crate::common::frames::{device, new_heights_in_turn};
 use crate::common::terrains::{BORDERS, OF_A_FOLDER, border_name, terrains};
 use crate::common::{Outcome, head, inputs, median};
-use light::{FINE_AZIMUTHS, FINER, Kind, LOW_SUN, Light, PERIODIC_AZIMUTHS, PICKS, TURNS, modes};
+use light::{
+    BOUNCED_ALBEDO, BOUNCES, FINE_AZIMUTHS, FINE_BOUNCE_AZIMUTHS, FINER, Kind, LOW_SUN, Light,
+    PERIODIC_AZIMUTHS, PICKS, TURNS, modes,
+};
 use summary::Summary;
 
 /// Of light: the relative RMSE, %, and 0. Of horizons: mean and 99.9th percentile, degrees.
@@ -74,6 +77,7 @@ pub fn run(mut args: Args) -> Outcome {
          turn (exact lines and brute force once)\n\
          Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
          {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\
+         Bounces: {BOUNCES} off an albedo of {BOUNCED_ALBEDO}, of all light, against brute force in {FINE_BOUNCE_AZIMUTHS} azimuths at every grid point\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
          f64 oracle in theirs at {PICKS} grid points\n\
          Borders: plane with all settings, the others with fewer; periodic on the first field of each ground\n\
@@ -98,6 +102,9 @@ pub fn run(mut args: Args) -> Outcome {
         for (border, light) in borders.flat_map(|b| lights.iter().map(move |l| (b, l))) {
             let mut scene = inputs::lit_by(terrain.field.clone(), light.lights.clone());
             scene.surface.border = border;
+            if light.kind == Kind::Bounces {
+                scene.surface.albedo = Albedo::Constant([BOUNCED_ALBEDO; 3]);
+            }
             let rows = compare(&mut gpu, light, &scene)?;
             let place = format!("{} | {} | {}", terrain.name, border_name(border), light.name);
             for row in &rows {

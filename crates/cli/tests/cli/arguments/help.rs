@@ -34,7 +34,7 @@ fn help_gives_units_and_defaults() {
         ("--wedge-side", &["4 to 256", "[default: 64]"]),
         ("--bounces", &["0 to 64", "[default: 0]"]),
         ("--bounce-engine", &["[default: auto]"]),
-        ("--bounce-azimuths", &["4 to 1024", "[default: 32]"]),
+        ("--bounce-azimuths", &["4 to 1024", "[default: 16]"]),
         ("--bounce-cutoff", &["0 to 1", "default 1/65536"]),
         ("--bounce-level-step", &["1 to 16", "[default: 4]"]),
         ("--bounce-level-offset", &["0 to 4", "[default: 2]"]),

@@ -123,7 +123,7 @@ fn ladders_have_their_range_and_default() {
         ("basis", "`basis table`"),
         ("sub-sampling", "`subsample 1`"),
         ("bounce engine", "`bounce_engine auto`"),
-        ("bounce azimuths", "`bounce_azimuths 32`"),
+        ("bounce azimuths", "`bounce_azimuths 16`"),
     ];
     assert_eq!(found, expected);
     for ladder in &all {
