@@ -26,7 +26,7 @@ layout(push_constant) uniform BounceShadePush {
 #include "shared/nodes.glsl"
 #include "sh/alike.glsl"
 
-// Below this share the ratio of two azimuth rules is numerical noise.
+// The ratio of shares grows no further where the nodes' share is below this: it may be numerical noise there.
 const float LEAST_SHARE = 1.0 / 256.0;
 
 float ground_share(ivec2 at) {
@@ -70,11 +70,11 @@ void main() {
     for (int i = 0; i < 4; i++) {
         light += counts[i] * imageLoad(node_sum, nodes[i]).rgb;
     }
-    // A node's own light is kept, and no ground reflects none. A share far above a tiny one of the nodes is held down.
-    float weight = counts.x + counts.y + counts.z + counts.w;
+    // A node keeps its own light. A texel without visible ground, among nodes with some, gets none.
+    float weight = max(counts.x + counts.y + counts.z + counts.w, 1e-30);
     float around = dot(counts, shares) / weight;
     float share = ground_share(at);
     float more = 1.0 + (share - around) / max(around, LEAST_SHARE);
-    float ratio = share > around ? more : share / max(around, 1e-30);
+    float ratio = share >= around ? more : share / around;
     imageStore(bounce_sum, at, vec4(light / weight * ratio, 1.0));
 }

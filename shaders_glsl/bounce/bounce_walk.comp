@@ -3,8 +3,7 @@
 // the horizon at the occluder that this line has stored; each part with its own radiance, weighted in closed form.
 // Reads: azimuths, occluders, line_blocks and bounce_ground (or grey_blocks and grey_ground).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
-// last dispatch).
-// Also sky_share, where FINDS_SHARE: exit radiance under a sky of radiance 1.
+// last dispatch); where FINDS_SHARE, sky_share (exit radiance under a sky of radiance 1).
 // Writes: visibility_cache (of the nodes of later bounces).
 // One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460

@@ -62,7 +62,7 @@ fn the_planner_takes_walks_where_there_are_lines() {
 
 /// An engine works at nodes, later bounces at every second of them, and every texel is lit from them. Later
 /// bounces of sweeps use visibility caches, which take no more than a quarter of the memory left; otherwise
-/// each is swept and walked.
+/// each is swept and walked, from every texel without sub-sampling.
 #[test]
 fn bounces_at_nodes() {
     let scene = under_sky(flat(13, 18));
@@ -124,6 +124,10 @@ fn bounces_at_nodes() {
     };
     assert_eq!(walked(&plan), found(2) * 128);
     assert_eq!(walked(&tight), (found(2) + 2 * found(4)) * 128);
+    assert!(tight.notes.iter().any(|n| n.contains("walks again")), "{:?}", tight.notes);
+    let all = Quality { subsample: 1, ..walks };
+    let tight = drawn(&large, &all, 3 * sets);
+    assert_eq!((walked(&tight), count(&tight, "bounce_shade")), (3 * 50 * 70 * 128, 0));
     assert!(tight.notes.iter().any(|n| n.contains("walks again")), "{:?}", tight.notes);
     // A single bounce needs no cache, and no bounce needs no ground share.
     let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);

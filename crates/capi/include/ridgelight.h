@@ -266,7 +266,7 @@ typedef struct RidgelightQuality {
     uint32_t bounces;
     // How bounced light is found: 1 brute-force, 2 sweep, 3 pyramid, 4 auto (default).
     uint32_t bounce_engine;
-    // Azimuths of bounced light per grid point, [4..1024], default 32.
+    // Azimuths of bounced light per grid point, [4..1024], default 16.
     uint32_t bounce_azimuths;
     // As level_step, for the pyramid of exit radiance, [1..16], default 4.
     uint32_t bounce_level_step;

@@ -62,7 +62,7 @@ pub struct RidgelightQuality {
     pub bounces: u32,
     /// How bounced light is found: 1 brute-force, 2 sweep, 3 pyramid, 4 auto (default).
     pub bounce_engine: u32,
-    /// Azimuths of bounced light per grid point, [4..1024], default 32.
+    /// Azimuths of bounced light per grid point, [4..1024], default 16.
     pub bounce_azimuths: u32,
     /// As level_step, for the pyramid of exit radiance, [1..16], default 4.
     pub bounce_level_step: u32,

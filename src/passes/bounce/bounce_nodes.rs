@@ -1,4 +1,4 @@
-//! Sub-sampled bounces. Irradiance is found at nodes. Every grid point then takes the mean radiance of the
+//! Bounces at nodes. Irradiance is found at nodes. Every grid point then takes the mean radiance of the
 //! ground visible from the nodes around it, times its own share of ground.
 
 use crate::graph::bytes_text;
@@ -28,8 +28,8 @@ impl NodeSum {
 pub(crate) struct BounceNodes {
     /// Nodes of the first bounce; none where it is found at every grid point.
     pub first: Option<NodeSum>,
-    /// Nodes of later bounces, where there are any, with sums in turn. They are fewer than those of the first bounce, since
-    /// later bounces are weaker and smoother.
+    /// Nodes of later bounces, where there are any, with two images of their sums, used alternately. They are fewer than those
+    /// of the first bounce, since later bounces are weaker and smoother.
     later: Option<[NodeSum; 2]>,
     /// Irradiance of a sky of radiance 1, at every grid point.
     pub sky_share: ResourceId,
@@ -42,8 +42,8 @@ pub(crate) struct BounceNodes {
 
 impl BounceNodes {
     /// None where all bounces are found at every grid point, or without bounces. `sky_share` is that of other lights;
-    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and
-    /// it takes at most a quarter of the remaining budget.
+    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and there is
+    /// room for it. Where there is none, walks from every grid point find all bounces.
     pub(crate) fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -54,25 +54,27 @@ impl BounceNodes {
     ) -> Option<Self> {
         let stride = quality.subsample;
         let is_walked = quality.bounces.engine == BounceEngine::Sweep;
-        // The other engines are exact, or find a share of the sky with no sweep.
-        if count == 0 || stride == 1 && (count == 1 || !is_walked) {
+        let needs_cache = is_walked && count > 1;
+        if count == 0 || stride == 1 && !needs_cache {
             return None;
         }
-        let mut sum = |name: &str, stride: u32| {
-            let nodes = Nodes { stride };
+        let later = Nodes { stride: (2 * stride).max(LEAST_LATER_STRIDE) };
+        let visibility_cache =
+            needs_cache.then(|| cache(builder, (size, later), quality, limits, notes)).flatten();
+        if stride == 1 && visibility_cache.is_none() {
+            return None;
+        }
+        let mut sum = |name: &str, nodes: Nodes| {
             let [cols, rows] = nodes.size(size);
             let extent = [cols, rows, 1];
-            NodeSum {
-                nodes,
-                sum: builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false),
-            }
+            let sum = builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false);
+            NodeSum { nodes, sum }
         };
-        let first = (stride > 1).then(|| sum("node_sum", stride));
-        let later_stride = (2 * stride).max(LEAST_LATER_STRIDE);
+        let first = (stride > 1).then(|| sum("node_sum", Nodes { stride }));
         let later = (count > 1).then(|| {
-            let one = sum("later_node_sum", later_stride);
+            let one = sum("later_node_sum", later);
             // Each reads the sum of the bounce before.
-            [one, if count > 2 { sum("other_node_sum", later_stride) } else { one }]
+            [one, if count > 2 { sum("other_node_sum", later) } else { one }]
         });
         let shared = sky_share.filter(|_| !is_walked);
         let share = || {
@@ -80,26 +82,6 @@ impl BounceNodes {
             builder.image("sky_share", Owner::Internal, Format::R32Float, extent, false)
         };
         let sky_share = shared.unwrap_or_else(share);
-        let kept = later.filter(|_| is_walked);
-        let visibility_cache = kept.and_then(|later| {
-            let layers = quality.bounces.azimuths;
-            let bytes = later[0].count(size) * u64::from(layers) * 16;
-            let room = (limits.memory_budget.saturating_sub(builder.bytes()) / 4)
-                .min(limits.allocation_bytes);
-            if bytes > room || layers > limits.image_layers {
-                notes.push(format!(
-                    "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers, of {} in {}",
-                    bytes_text(bytes),
-                    bytes_text(room),
-                    limits.image_layers
-                ));
-                return None;
-            }
-            let [across, along] = later[0].nodes.size(size);
-            let extent = [across, along, layers];
-            let format = Format::Rgba32Uint;
-            Some(builder.image("visibility_cache", Owner::Internal, format, extent, true))
-        });
         Some(Self { first, later, sky_share, finds_share: shared.is_none(), visibility_cache })
     }
 
@@ -118,4 +100,30 @@ impl BounceNodes {
     pub(crate) fn cached(&self) -> Option<(ResourceId, Nodes)> {
         Some((self.visibility_cache?, self.later?[0].nodes))
     }
+}
+
+/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget.
+fn cache(
+    builder: &mut Builder,
+    (size, nodes): ([u32; 2], Nodes),
+    quality: &Quality,
+    limits: &Limits,
+    notes: &mut Vec<String>,
+) -> Option<ResourceId> {
+    let layers = quality.bounces.azimuths;
+    let [across, along] = nodes.size(size);
+    let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 16;
+    let left = limits.memory_budget.saturating_sub(builder.bytes());
+    let room = (left / 4).min(limits.allocation_bytes);
+    if bytes > room || layers > limits.image_layers {
+        notes.push(format!(
+            "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers, of {} in {}",
+            bytes_text(bytes),
+            bytes_text(room),
+            limits.image_layers
+        ));
+        return None;
+    }
+    let extent = [across, along, layers];
+    Some(builder.image("visibility_cache", Owner::Internal, Format::Rgba32Uint, extent, true))
 }

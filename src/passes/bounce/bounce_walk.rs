@@ -75,6 +75,7 @@ pub(crate) fn plan(
         ("bounce_sum", sum),
     ];
     bound.extend(swept.sky_share.map(|share| ("sky_share", share)));
+    let share_bytes = if swept.sky_share.is_some() { 8 } else { 0 };
     for (from, which, [across, along]) in dispatches.iter().filter(|d| !d.2.contains(&0)) {
         let found = u64::from(*along) * u64::from(*across);
         let mut bound = bound.clone();
@@ -114,7 +115,11 @@ pub(crate) fn plan(
                 block_layers,
             },
             &bound,
-            found * (swept.ground.texel_bytes() + 32 + u64::from(count) * bytes_an_azimuth),
+            found
+                * (swept.ground.texel_bytes()
+                    + 32
+                    + share_bytes
+                    + u64::from(count) * bytes_an_azimuth),
             found * u64::from(count),
         );
         pass.azimuths = azimuths.clone();

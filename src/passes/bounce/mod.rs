@@ -8,12 +8,12 @@ pub(crate) mod bounce_ground;
 /// `--bounce-engine brute-force`: every visible interval along each azimuth.
 pub(crate) mod bounce_march;
 pub(crate) mod bounce_nodes;
-/// `--subsample` with `--bounces`: gathered radiance of the nodes times each texel's own share of ground.
+/// Bounces at nodes: the mean radiance that nodes gather, times each texel's own share of ground.
 pub(crate) mod bounce_shade;
 /// `--bounce-engine sweep`: visible ground up to each texel's horizon, near by step by step, farther away in blocks.
 pub(crate) mod bounce_walk;
 pub(crate) mod bounces;
-/// Later sub-sampled bounces from the visibility cache.
+/// Later bounces from the visibility cache.
 pub(crate) mod cache_gather;
 /// `--bounce-engine sweep`: heights and radiance of the ground along swept lines, block by block.
 pub(crate) mod line_blocks;

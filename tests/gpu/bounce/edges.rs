@@ -38,8 +38,8 @@ fn bounced(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> 
 }
 
 /// A periodic field has no edge. Rolled by half its size, with its light, it has the same indirect light, rolled: within
-/// 200 roundings, as sums round in another order. Nodes have an edge, the last ones, so of walks only the first bounce
-/// rolls. A wall at one edge bounces light across the other edge of a periodic
+/// 200 roundings, as sums round in another order. The second bounce of a walk is found at nodes, of which the last one does not
+/// roll: it is compared at every fourth texel. A wall at one edge bounces light across the other edge of a periodic
 /// field only.
 #[test]
 fn periodic_fields_bounce_across_the_seam() {
@@ -59,13 +59,16 @@ fn periodic_fields_bounce_across_the_seam() {
         scene
     };
     for engine in ENGINES {
-        let quality = quality(engine, if engine == BounceEngine::Sweep { 1 } else { 2 }, 4);
+        let quality = quality(engine, 2, 4);
         let still = bounced(&mut gpu, &scene([0, 0], Border::Periodic), &quality);
         let rolled = bounced(&mut gpu, &scene([8, 8], Border::Periodic), &quality);
         let brightest = still[0].iter().fold(0.0_f32, |m, v| m.max(*v));
         let bound = f64::from(brightest) * 200.0 * EPSILON;
         for (k, (still, rolled)) in still.iter().zip(&rolled).enumerate() {
-            for (i, there) in rolled.iter().enumerate() {
+            let is_compared = |i: usize| {
+                k == 0 || engine != BounceEngine::Sweep || i % 4 == 0 && i / SIDE % 4 == 0
+            };
+            for (i, there) in rolled.iter().enumerate().filter(|(i, _)| is_compared(*i)) {
                 let here = still[(i / SIDE + 8) % SIDE * SIDE + (i + 8) % SIDE];
                 let off = f64::from((here - there).abs());
                 assert!(off <= bound, "{engine:?} {k} {i}: {here} {there}, {off:e}");

@@ -49,13 +49,15 @@ fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     swept.per_grid_point(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
 }
 
-/// White ground under a white sky: each bounce adds. Sky and ground are found separately: where a texel's shares s and t sum to 1 +
-/// d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t). That holds for the first bounce, of
-/// the texel's own ground. Later bounces are those of nodes: a texel takes its share t of their mean radiance, which is at most the
-/// largest of the bounce before, so all of them add t B / (1 - T) at most, of the first bounce's largest radiance B and the largest
-/// share T. A visibility cache weighs its four rings to half a part of 65535 of π / 2 an azimuth, of π in all: that moves the ground's
-/// share of a node, where it is not 0, and with it t, by as much times t over the node's share or [`LEAST_SHARE`]. 16 roundings a
-/// bounce.
+/// White ground under a white sky: each bounce adds, and none gains energy. 16 roundings a bounce.
+///
+/// First bounce: sky and ground are found separately. Where a texel's shares s and t sum to 1 + d, light that is nowhere more than 1 +
+/// D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t).
+///
+/// Later bounces: a texel takes its share t of the nodes' mean radiance, which is at most the largest of the bounce before. With the
+/// first bounce's largest radiance B and the largest share T, all of them add t B / (1 - T) at most. A visibility cache rounds the
+/// weights of four rings to half a part of 65535 of π / 2 an azimuth, of π in all. That moves the ground's share of a node, where it is
+/// not 0, and with it t, by as much times t over the node's share or [`LEAST_SHARE`]. How much they lose is tested on terrain.
 #[test]
 fn a_furnace_gains_no_energy() {
     const COUNT: u32 = 64;

@@ -25,23 +25,23 @@ pub const REPORTS: [(&str, &str); 10] = [
     ("azimuths", "--sizes 1024,--fuse aimed-around,--azimuth-list 8;16;32;64;128;256"),
     (
         "bounces0",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 0,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 0,--passes light_resolve",
     ),
     (
         "bounces1",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 1,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 1,--passes light_resolve",
     ),
     (
         "bounces2",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 2,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 2,--passes light_resolve",
     ),
     (
         "bounces3",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 3,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 3,--passes light_resolve",
     ),
     (
         "bounces4",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounces 4,--passes light_resolve",
+        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 4,--passes light_resolve",
     ),
 ];
 

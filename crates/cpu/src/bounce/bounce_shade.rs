@@ -6,7 +6,7 @@ use crate::sh_shade::nodes_around;
 use crate::shared::sweep::Heights;
 use ridgelight::plan::Nodes;
 
-/// Below this share the ratio of two azimuth rules is numerical noise.
+/// The ratio of shares grows no further where the nodes' share is below this: it may be numerical noise there.
 pub const LEAST_SHARE: f64 = 1.0 / 256.0;
 
 /// Light of one grid point, for albedo 1, from that of all nodes and from all grid points' light under a sky of
@@ -28,10 +28,9 @@ pub fn bounce_shade(
         around += weight * share(nodes.place(x, size[0]), nodes.place(y, size[1]));
     }
     let own = share(col as u32, row as u32);
-    let ratio = match own > around {
+    let ratio = match own >= around {
         true => 1.0 + (own - around) / around.max(LEAST_SHARE),
-        false if around > 0.0 => own / around,
-        false => 0.0,
+        false => own / around,
     };
     sum.map(|s| s * ratio)
 }

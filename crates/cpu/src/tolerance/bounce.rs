@@ -104,7 +104,7 @@ pub struct BounceError {
     pub sum: Rgb,
     /// Exit radiance for albedo 1.
     pub light: Rgb,
-    /// Of the weight of a whole hemisphere.
+    /// The weight of a whole hemisphere.
     pub whole: f64,
 }
 

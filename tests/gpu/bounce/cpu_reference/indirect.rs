@@ -298,8 +298,8 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The sum so far; after the last azimuths, the bounced light. The share of the sky where a walk finds it: what white ground
-/// does not bounce.
+/// The sum so far; after the last azimuths, the bounced light. The weight of whole hemispheres. The share of the sky where a walk
+/// finds it: 1 minus the bounce of white ground.
 pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("BounceWalkPush", "azimuth_count");
     const CLEARS: usize = offset("BounceWalkPush", "clears");
@@ -310,8 +310,8 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let begin = run.begin_of_light(first, word(CLEARS) == 1);
     let range = begin..first + word(AZIMUTH_COUNT);
     let exit = run.walked_exit(pass);
-    let got = run.floats(pass, "bounce_sum").expect("written");
-    let got = colours(&got);
+    let sums = run.floats(pass, "bounce_sum").expect("written");
+    let got = colours(&sums);
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
     let is_last = word(IS_LAST) == 1;
     let nodes = Nodes { stride: constant(pass, "node_stride") };
@@ -349,9 +349,10 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let slices = run.slices(place, wedge, brightest);
         let off = BounceError::of(along, |_, cast| walk_error(wedge, cast), &slices);
         let (light, weight) = light_and_weight(along);
+        let whole = [weight, off.whole];
         match is_last {
-            true => (radiance(along), off.light, [1.0, off.whole / weight]),
-            false => (light, off.sum, [weight, off.whole]),
+            true => (radiance(along), off.light, whole),
+            false => (light, off.sum, whole),
         }
     };
     let at = [range.len(), across];
@@ -360,9 +361,17 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         (want, off)
     };
     let mut pairs = each(&got, of_light, at);
+    let of_whole = |i: usize| {
+        let (_, _, [whole, whole_off]) = of(&bounced[i], places[i], brightest);
+        ([whole; 3], [whole_off; 3])
+    };
+    let wholes: Vec<[f64; 3]> = sums.chunks_exact(4).map(|t| [f64::from(t[3]); 3]).collect();
+    pairs.extend(each(&wholes, of_whole, at));
     if let (Some(share), Some(white)) = (share, white) {
         let of_share = |i: usize| {
-            let (ground, off, [whole, whole_off]) = of(&white[i], places[i], 1.0);
+            let (ground, off, whole) = of(&white[i], places[i], 1.0);
+            let unit = if is_last { whole[0] } else { 1.0 };
+            let [whole, whole_off] = whole.map(|v| v / unit);
             (ground.map(|ground| whole - ground), off.map(|off| off + whole_off))
         };
         let got: Vec<[f64; 3]> = share.iter().map(|v| [f64::from(*v); 3]).collect();

@@ -136,6 +136,8 @@ pub(crate) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let tolerance = terms * EPSILON * brightest(&exit) * weights / whole;
         let at = [0, *row, *col];
         pairs.extend((0..3).map(|c| Pair { got: got[c].into(), want: want[c], tolerance, at }));
+        // The next bounce divides by it.
+        pairs.push(Pair { got: got[3].into(), want: whole, tolerance: 0.0, at });
     }
     pairs
 }

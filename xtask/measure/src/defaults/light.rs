@@ -39,7 +39,7 @@ pub enum Kind {
     Sky,
     Environment,
     Key,
-    /// Light with what the ground reflects onto itself.
+    /// Direct and indirect light.
     Bounces,
     /// Horizons alone, without light.
     Horizons,

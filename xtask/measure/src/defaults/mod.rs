@@ -77,7 +77,8 @@ pub fn run(mut args: Args) -> Outcome {
          turn (exact lines and brute force once)\n\
          Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
          {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\
-         Bounces: {BOUNCES} off an albedo of {BOUNCED_ALBEDO}, of all light, against brute force in {FINE_BOUNCE_AZIMUTHS} azimuths at every grid point\n\
+         Bounces: {BOUNCES}, albedo {BOUNCED_ALBEDO}; the error is of direct and indirect light together, against brute force in {FINE_AZIMUTHS} azimuths, its \
+         bounces in {FINE_BOUNCE_AZIMUTHS} at every grid point\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
          f64 oracle in theirs at {PICKS} grid points\n\
          Borders: plane with all settings, the others with fewer; periodic on the first field of each ground\n\
