@@ -140,9 +140,9 @@ pub fn device_fused_slope(largest_m: f64, step_m: f64) -> f64 {
 
 /// `bounce_shade` from given shares and light, of the light's own magnitude.
 ///
-/// What nodes are counted for errs as in `sh_shade`, in the light and in the share around. A share is 1 less what is given, 2 ε of
-/// 1. The ratio of two shares moves by that over the larger one below 1, and by that over [`LEAST_SHARE`] at most above, for each of
-/// them. Sums of four and quotients, 16 ε.
+/// What nodes are counted for errs as in `sh_shade`, in the light and in the share around. A share, what is given subtracted from
+/// one, errs by 2 ε. The ratio of two shares errs by that over the larger one below 1, and by that over [`LEAST_SHARE`] at most above,
+/// for each of them. Sums of four and quotients, 16 ε.
 pub fn device_bounce_shade(error: &ShadeError) -> f64 {
     2.0 * error.node_weight() + (2.0 * 2.0 / LEAST_SHARE + 16.0) * EPSILON
 }
