@@ -6,7 +6,8 @@ use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::nodes::Nodes;
 use crate::scene::{BounceEngine, Quality};
 
-/// Least stride of the nodes of later bounces.
+/// Least stride of the nodes of later bounces. On the bundled mountain, Mt Rainier and moss at an albedo of 0.8, a stride of 2 has 0.83
+/// to 0.99 times the error of all light with a visibility cache four times as large.
 const LEAST_LATER_STRIDE: u32 = 4;
 
 /// Nodes, and the irradiance there.
@@ -102,7 +103,11 @@ impl BounceNodes {
     }
 }
 
-/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget.
+/// Bytes a grid point of the images that only nodes need: `cells`, `ground` and `sky_share`.
+const IMAGE_BYTES: u64 = 16 + 16 + 4;
+
+/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget, and half of it together with the images of
+/// all grid points that only nodes need.
 fn cache(
     builder: &mut Builder,
     (size, nodes): ([u32; 2], Nodes),
@@ -114,7 +119,8 @@ fn cache(
     let [across, along] = nodes.size(size);
     let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 16;
     let left = limits.memory_budget.saturating_sub(builder.bytes());
-    let room = (left / 4).min(limits.allocation_bytes);
+    let images = u64::from(size[0]) * u64::from(size[1]) * IMAGE_BYTES;
+    let room = (left / 4).min((left / 2).saturating_sub(images)).min(limits.allocation_bytes);
     if bytes > room || layers > limits.image_layers {
         notes.push(format!(
             "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers, of {} in {}",
