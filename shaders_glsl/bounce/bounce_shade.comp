@@ -26,7 +26,7 @@ layout(push_constant) uniform BounceShadePush {
 #include "shared/nodes.glsl"
 #include "sh/alike.glsl"
 
-// The ratio of shares grows no further where the nodes' share is below this: it may be numerical noise there.
+// Least divisor where a texel's share is larger than the nodes': below it, theirs may be numerical noise.
 const float LEAST_SHARE = 1.0 / 256.0;
 
 float ground_share(ivec2 at) {

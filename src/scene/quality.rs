@@ -119,14 +119,14 @@ settings! {
 
         /// Find visibility at every Nth texel of every Nth row, and light at all texels
         ///
-        /// Higher is faster and blurs shadows. With `basis sh` and with `bounces`. At 2 or 4, bounces after the first use every
-        /// second of those texels. At 1, those of `bounce_engine sweep` use every fourth texel.
+        /// Higher is faster and less exact. With `basis sh` and with `bounces`. At 2 or 4, bounces after the first use every
+        /// second of those texels and rows. At 1, those of `bounce_engine sweep` use every fourth.
         ///
         /// Light is computed at every texel with its own normal from the nodes around it. Visibility takes a quarter or a
         /// sixteenth of the memory. RMSE on the bundled mountain under the bundled sky: 0.2 % at 2, 0.4 % at 4
         /// (`cargo measure soft`). Bounces use the same nodes with any basis. On real terrain under a low sun, the
-        /// error of light with three bounces is 1.2 to 2.8 times larger at 2 than at 1, and a frame takes 0.74 to 0.93 times as long
-        /// (llvmpipe, benches/results/defaults.txt).
+        /// error of light with three bounces is 1.2 to 2.8 times as large at 2 as at 1, and a frame takes 0.74 to 0.93 times as long;
+        /// under a sky alone the errors are equal within 8 % (llvmpipe, benches/results/defaults.txt).
         Expert "subsample" subsample: u32 = 1, Values::OneOf(&[1, 2, 4]);
     }
 
@@ -134,7 +134,7 @@ settings! {
     pub struct Bounces of Quality::bounces_mut, {
         /// Bounces of indirect light, 0 to 64; 0 is direct light
         ///
-        /// Fewer leave hollows darker; more take time in proportion.
+        /// Fewer leave hollows darker; more take longer.
         Everyone "bounces" count: u32 = 0, Values::Whole(0..=64);
 
         /// Method that finds the visible surface of a bounce; with `bounces`

@@ -94,7 +94,7 @@ fn bounces_at_nodes() {
             }
         }
     }
-    // Walks from every texel find the share of ground, and keep a cache of every fourth node. The other engines do neither.
+    // Walks from every texel find the share of ground, and keep a cache of every fourth texel. The other engines do neither.
     let plan = drawn(&scene, &quality(BounceEngine::Sweep, 3, 1), ROOMY);
     let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
     assert_eq!(bytes("visibility_cache"), nodes(4) * 8 * 16);
@@ -106,6 +106,7 @@ fn bounces_at_nodes() {
     for engine in [BounceEngine::BruteForce, BounceEngine::Pyramid] {
         let plan = drawn(&scene, &quality(engine, 3, 1), ROOMY);
         assert!(count(&plan, "bounce_shade") == 0 && plan.find("sky_share").is_none());
+        assert!(plan.find("visibility_cache").is_none());
     }
     // With many azimuths the caches take most of the memory.
     let few = quality(BounceEngine::Sweep, 3, 2);

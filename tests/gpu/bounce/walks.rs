@@ -57,7 +57,7 @@ fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
 /// Later bounces: a texel takes its share t of the nodes' mean radiance, which is at most the largest of the bounce before. With the
 /// first bounce's largest radiance B and the largest share T, all of them add t B / (1 - T) at most. A visibility cache rounds the
 /// weights of four rings to half a part of 65535 of π / 2 an azimuth, of π in all. That moves the ground's share of a node, where it is
-/// not 0, and with it t, by as much times t over the node's share or [`LEAST_SHARE`]. How much they lose is tested on terrain.
+/// not 0, and with it t, by as much times t over the node's share or [`LEAST_SHARE`]. How much they lose is tested by `on_terrain_shares_are_better_than_light`.
 #[test]
 fn a_furnace_gains_no_energy() {
     const COUNT: u32 = 64;

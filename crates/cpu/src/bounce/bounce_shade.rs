@@ -6,7 +6,7 @@ use crate::sh_shade::nodes_around;
 use crate::shared::sweep::Heights;
 use ridgelight::plan::Nodes;
 
-/// The ratio of shares grows no further where the nodes' share is below this: it may be numerical noise there.
+/// Least divisor where a texel's share is larger than the nodes': below it, theirs may be numerical noise.
 pub const LEAST_SHARE: f64 = 1.0 / 256.0;
 
 /// Light of one grid point, for albedo 1, from that of all nodes and from all grid points' light under a sky of

@@ -11,13 +11,13 @@ pub(super) const PARTS: usize = 4;
 /// Relative error of bounced light by each part at 32 azimuths, 2× sub-sampled. Source: columns
 /// "bounced" of `cargo measure bounce` and `cargo measure bounce-table`
 /// (`benches/results/bounce.txt`, `bounce_table.txt`). Pyramids: √(pyramid² - noise²) of Mt
-/// Washington under the sky, one bounce. Nodes: sweep, one bounce, 2×. Azimuths: √(sweep's 32² -
+/// Washington under the sky, one bounce. Nodes: √(sweep, one bounce, 2×² - 1×²). Azimuths: √(sweep's 32² -
 /// sweep's three bounces, 2×²), which removes the error common to both. Omitted bounces: all of
 /// their light.
 ///
 /// Second number: the standard deviation of the logarithm. It is assumed, not fitted: a factor of
 /// two either way (ln 2), or e for omitted bounces, which depend on where light is trapped.
-const SHARES: [[f64; 2]; PARTS] = [[0.2, 0.7], [0.018, 0.7], [0.03, 0.7], [1.0, 1.0]];
+const SHARES: [[f64; 2]; PARTS] = [[0.2, 0.7], [0.017, 0.7], [0.019, 0.7], [1.0, 1.0]];
 
 /// The engines that can run, in the order of [`work`].
 pub(super) const ENGINES: [BounceEngine; 3] =
@@ -72,8 +72,8 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
     }
 }
 
-/// Error of later bounces at every fourth texel, over that of all bounces at every second and later ones at every fourth: assumed
-/// to be the later bounces' part of the indirect light.
+/// Error where only later bounces are interpolated, with a stride of 4, over that with strides of 2 and 4. Assumed: the later
+/// bounces' part of the indirect light.
 const LATER_NODES: f64 = 0.2;
 
 /// ns per azimuth and texel: of a walk, of a march per texel of the side, of a gather; on lavapipe.
@@ -85,7 +85,7 @@ const MARCH: f64 = 4.8;
 const GATHER: f64 = 330.0;
 /// Time of a later bounce, which reads the first bounce's visibility cache, over that
 /// of a walk at every texel: sweep, 1×, same file, (three bounces - one) / 2 over one bounce.
-const CAST: f64 = 0.041;
+const CACHED: f64 = 0.077;
 
 /// Work of walks, marches and gathers; only one of them is above 0.
 pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
@@ -101,11 +101,11 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
         _ => 0.1,
     };
     let stride = quality.subsample;
-    // Sweep and line blocks are those of every texel: "over 1×" of one bounce, sweep; every eighth as every fourth.
+    // Sweep and line blocks are those of every texel: "over 1×", sweep, at 2 of one bounce, at 4 of three.
     let walked = match stride {
         1 => 1.0,
         2 => 0.7,
-        _ => 0.42,
+        _ => 0.6,
     };
     let later = nodes(if stride == 1 { 1 } else { 2 * stride });
     let found = nodes(stride) + later * (drawn - 1.0);
@@ -116,7 +116,7 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     match engine(quality) {
         BounceEngine::BruteForce => all[1] = azimuths * found * MARCH * side,
         BounceEngine::Pyramid => all[2] = azimuths * found * GATHER,
-        _ => all[0] = azimuths * WALK * (walked + CAST * (drawn - 1.0)),
+        _ => all[0] = azimuths * WALK * (walked + CACHED * (drawn - 1.0)),
     }
     all
 }
@@ -137,9 +137,9 @@ mod tests {
             light.factors(&Quality { bounces, subsample, ..Quality::default() })
         };
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
-        // ½ + ¼ + ⅛ of the energy are all.
         // One bounce is found at every texel.
         assert_eq!(of(0.5, 32, 1)[2], 0.0);
+        // ½ + ¼ + ⅛ of the energy are all.
         assert!(of(0.9, 32, 1)[..3] == [0.0; 3] && near(of(0.9, 32, 1)[3], 1.11));
         assert!(near(of(0.5, 32, 1)[3], 0.11) && near(of(0.2, 32, 1)[3], 0.01));
         assert_eq!(of(0.0, 32, 1), [0.0, 1.0, 0.2, 0.0]);
