@@ -103,10 +103,12 @@ fn bounces_at_nodes() {
         plan.find("node_sum").is_none() && !labels(&plan).join(" ").contains("sky_shade bounce")
     );
     assert_eq!(missing_barriers(&plan.passes), vec![]);
+    let says = |plan: &Plan| plan.notes.iter().any(|note| note.contains("every 4th grid point"));
+    assert!(says(&plan), "{:?}", plan.notes);
     for engine in [BounceEngine::BruteForce, BounceEngine::Pyramid] {
         let plan = drawn(&scene, &quality(engine, 3, 1), ROOMY);
         assert!(count(&plan, "bounce_shade") == 0 && plan.find("sky_share").is_none());
-        assert!(plan.find("visibility_cache").is_none());
+        assert!(plan.find("visibility_cache").is_none() && !says(&plan));
     }
     // With many azimuths the caches take most of the memory.
     let few = quality(BounceEngine::Sweep, 3, 2);

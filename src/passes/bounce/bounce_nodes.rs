@@ -1,4 +1,4 @@
-//! Bounces at nodes. Irradiance is found at nodes. Every grid point then takes the mean radiance of the
+//! Bounces at nodes: irradiance is computed at nodes. Every grid point then takes the mean radiance of the
 //! ground visible from the nodes around it, times its own share of ground.
 
 use crate::graph::bytes_text;
@@ -126,6 +126,10 @@ fn cache(
         ));
         return None;
     }
+    notes.push(format!(
+        "bounces after the first are interpolated between every {}th grid point and row",
+        nodes.stride
+    ));
     let extent = [across, along, layers];
     Some(builder.image("visibility_cache", Owner::Internal, Format::Rgba32Uint, extent, true))
 }

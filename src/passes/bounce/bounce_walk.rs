@@ -56,16 +56,18 @@ pub(crate) fn plan(
     let count = azimuths.len() as u32;
     let NodeSum { nodes, sum } = bounce.found_at();
     let [along, across] = nodes.size([axis.steps, axis.lanes]);
-    let (mut dispatches, mut kept_each) = (vec![(From::All, "", [across, along])], 2);
-    if let Some((_, later)) = swept.visibility_cache {
-        let [kept_along, kept] = later.size([axis.steps, axis.lanes]);
-        kept_each = later.stride / nodes.stride;
-        dispatches = vec![
-            (From::Kept, " kept", [kept, kept_along]),
-            (From::Between, " between", [kept, along - kept_along]),
-            (From::Rest, " rest", [across - kept, along]),
-        ];
-    }
+    let kept_each = swept.visibility_cache.map_or(2, |(_, later)| later.stride / nodes.stride);
+    let dispatches = match swept.visibility_cache {
+        None => vec![(From::All, "", [across, along])],
+        Some((_, later)) => {
+            let [kept_along, kept] = later.size([axis.steps, axis.lanes]);
+            vec![
+                (From::Kept, " kept", [kept, kept_along]),
+                (From::Between, " between", [kept, along - kept_along]),
+                (From::Rest, " rest", [across - kept, along]),
+            ]
+        }
+    };
     let (line_blocks, block_layers) = swept.line_blocks.of(axis);
     let mut bound = vec![
         ("azimuths", swept.azimuths),

@@ -27,7 +27,12 @@ fn swept(count: u32, azimuths: u32, engine: BounceEngine) -> Quality {
 
 /// The first channel of the picture, of a scene under a sky alone.
 fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
-    gpu.picture(scene, quality).values.into_iter().map(f64::from).collect()
+    let limits = gpu.limits();
+    drawn_within(gpu, scene, quality, &limits)
+}
+
+fn drawn_within(gpu: &mut Device, scene: &Scene, quality: &Quality, limits: &Limits) -> Vec<f64> {
+    gpu.picture_within(scene, quality, limits).values.into_iter().map(f64::from).collect()
 }
 
 /// The share of ground of radiance 1 in a texel's view, by the CPU reference.
@@ -49,7 +54,45 @@ fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     swept.per_grid_point(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
 }
 
-/// White ground under a white sky: each bounce adds, and none gains energy. 16 roundings a bounce.
+/// White ground under a white sky: each bounce adds, and the sum rises to 1. Sky and ground are found separately:
+/// where a texel's shares s and t sum to 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 +
+/// D: D = d / (1 - t), and likewise from below; 16 roundings a bounce. All bounces are walked from every texel: the visibility cache has
+/// no room, as it needs a layer per azimuth.
+#[test]
+fn a_furnace_comes_up_to_one() {
+    const COUNT: u32 = 64;
+    let mut gpu = Device::new();
+    let limits = Limits { image_layers: 31, ..gpu.limits() };
+    let mut next = random(9);
+    let noise: Vec<f64> = (0..72).map(|_| next()).collect();
+    for border in [Border::Open, Border::Periodic] {
+        let scene = under_sky(field(8, 9, [1.0, 1.5], |r, c| 1.5 * noise[r * 9 + c]), border);
+        let ground = ground_shares(&scene.field, border, 32);
+        let mut before =
+            drawn_within(&mut gpu, &scene, &swept(0, 32, BounceEngine::Sweep), &limits);
+        let (mut above, mut below, mut darkest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (sky, ground) in before.iter().zip(&ground) {
+            let off = (sky + ground - 1.0) / (1.0 - ground);
+            (above, below) = (above.max(off), below.max(-off));
+            darkest = darkest.max(*ground);
+        }
+        let slack = above + 16.0 * EPSILON * f64::from(COUNT);
+        for count in [1, 2, 5, COUNT] {
+            let now =
+                drawn_within(&mut gpu, &scene, &swept(count, 32, BounceEngine::Sweep), &limits);
+            for (a, b) in before.iter().zip(&now) {
+                assert!(a <= b && *b <= 1.0 + slack, "{border:?} {count}: {a} {b} {slack:e}");
+            }
+            before = now;
+        }
+        let least = before.iter().fold(f64::MAX, |m, v| m.min(*v));
+        println!("{border:?}: {least:.4} to 1 + {slack:.2e}");
+        let left = darkest.powi(COUNT as i32) + below + 16.0 * EPSILON * f64::from(COUNT);
+        assert!(least >= 1.0 - left, "{border:?}: {least} {left}");
+    }
+}
+
+/// The same with later bounces at nodes: each bounce adds, and none gains energy. 16 roundings a bounce.
 ///
 /// First bounce: sky and ground are found separately. Where a texel's shares s and t sum to 1 + d, light that is nowhere more than 1 +
 /// D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t).

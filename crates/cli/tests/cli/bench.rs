@@ -16,6 +16,31 @@ fn gpu_an_unknown_pass_is_reported_first() {
 /// The work of the peak rates follows from the memory budget. By default it takes most of a run.
 const SMALL: [&str; 2] = ["--memory-budget", "16MiB"];
 
+/// Of later bounces, the second is compared as well.
+#[test]
+fn gpu_two_bounces_are_verified() {
+    let folder = Folder::new();
+    let bounces = [
+        "bench",
+        "--size",
+        "32",
+        "--albedo",
+        "0.5",
+        "--runs",
+        "1",
+        "--passes",
+        "light_resolve",
+        "--bounces",
+    ];
+    for (count, expected) in [("1", [1, 0]), ("3", [1, 1])] {
+        let run = folder.run(&[&bounces[..], &[count], &SMALL].concat());
+        assert_eq!(run.status, Some(0), "{}{}", run.out, run.err);
+        let found =
+            ["first bounce error", "second bounce error"].map(|of| run.out.matches(of).count());
+        assert_eq!(found, expected, "{}", run.out);
+    }
+}
+
 /// Reports with a thousandth of the times make a run SLOWER, with status 1; with a thousand times the times FASTER.
 #[test]
 fn gpu_an_earlier_report_gives_verdicts() {

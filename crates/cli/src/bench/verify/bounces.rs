@@ -38,24 +38,37 @@ pub(super) fn check(scene: &Scene, device: &mut Device) -> Result<String> {
     };
     let oracle = Oracle::new(&scene.field, scene.surface.border);
     let (mut exit, mut sentences) = (every(&direct), Vec::new());
-    for (name, layer) in ["first bounce", "second bounce"].into_iter().zip(bounces) {
-        let (found, is_later) = (every(layer), !sentences.is_empty());
-        let (cols, step) = (scene.field.cols(), (found.len() / PLACES).max(1) | 1);
-        let (mut off, mut all) = (Vec::new(), Vec::new());
-        for at in (0..found.len()).step_by(step) {
-            let want = bounce_march(&oracle, &exit, TRUE_AZIMUTHS, at / cols, at % cols);
-            off.extend((0..3).map(|c| found[at][c] - want[c]));
-            all.extend(want);
-        }
-        let size = rms(all.into_iter()).max(f64::MIN_POSITIVE);
-        let rounded = CACHE_SHARE * rms(exit.iter().flatten().copied()) / size;
-        let bound = bound(quality, is_later) + if is_later { rounded } else { 0.0 };
-        let errors =
-            within(&format!("the {name}"), "f64", rms(off.into_iter()) / size, bound, quality)?;
+    for (name, layer) in [FIRST, SECOND].into_iter().zip(bounces) {
+        let found = every(layer);
+        let errors = judge((&oracle, scene.field.cols()), name, [&exit, &found], quality)?;
         sentences.push(sentence(name, "f64", errors));
         exit = found;
     }
     Ok(sentences.join("; "))
+}
+
+const FIRST: &str = "first bounce";
+const SECOND: &str = "second bounce";
+
+/// The error of the light of a bounce, given the exit radiance before it, and its bound.
+fn judge(
+    (oracle, cols): (&Oracle, usize),
+    name: &str,
+    [exit, found]: [&[[f64; 3]]; 2],
+    quality: &Quality,
+) -> Result<(f64, f64)> {
+    let step = (found.len() / PLACES).max(1) | 1;
+    let (mut off, mut all) = (Vec::new(), Vec::new());
+    for at in (0..found.len()).step_by(step) {
+        let want = bounce_march(oracle, exit, TRUE_AZIMUTHS, at / cols, at % cols);
+        off.extend((0..3).map(|c| found[at][c] - want[c]));
+        all.extend(want);
+    }
+    let size = rms(all.into_iter()).max(f64::MIN_POSITIVE);
+    let is_later = name == SECOND;
+    let rounded = CACHE_SHARE * rms(exit.iter().flatten().copied()) / size;
+    let bound = bound(quality, is_later) + if is_later { rounded } else { 0.0 };
+    within(&format!("the {name}"), "f64", rms(off.into_iter()) / size, bound, quality)
 }
 
 /// A quadrature over azimuths has an error proportional to the squared step where light is smooth
@@ -82,4 +95,43 @@ fn bound(quality: &Quality, is_later: bool) -> f64 {
         BounceEngine::Pyramid => 0.75,
     };
     (rule + between + of_engine).min(0.95)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::verify::tests::scene;
+    use ridgelight::scene::Lights;
+
+    /// The light of every visible interval in another number of azimuths passes. No light and twice the light are refused with
+    /// every engine, also sub-sampled. Where nothing is interpolated or approximate, so is the light of the texel opposite.
+    #[test]
+    fn wrong_bounces_are_refused() {
+        const SIDE: usize = 12;
+        let scene = scene(SIDE, Lights::default());
+        let oracle = Oracle::new(&scene.field, scene.surface.border);
+        let exit: Vec<[f64; 3]> =
+            (0..SIDE * SIDE).map(|i| [1.0, (i % SIDE) as f64 / SIDE as f64, 0.5]).collect();
+        let at = |i: usize| bounce_march(&oracle, &exit, 64, i / SIDE, i % SIDE);
+        let right: Vec<[f64; 3]> = (0..SIDE * SIDE).map(at).collect();
+        let mut opposite = right.clone();
+        opposite.reverse();
+        let scaled = |by: f64| right.iter().map(|light| light.map(|v| by * v)).collect();
+        let wrong: [Vec<[f64; 3]>; 3] = [scaled(0.0), scaled(2.0), opposite];
+        use BounceEngine::{BruteForce, Pyramid, Sweep};
+        for (engine, subsample) in [(BruteForce, 1), (Sweep, 1), (Sweep, 4), (Pyramid, 4)] {
+            let bounces = Bounces { count: 2, engine, azimuths: 32, ..Bounces::default() };
+            let quality = Quality { bounces, subsample, ..Quality::default() };
+            for name in [FIRST, SECOND] {
+                let judged = |found: &[[f64; 3]]| {
+                    judge((&oracle, SIDE), name, [&exit, found], &quality).is_ok()
+                };
+                assert!(judged(&right), "{name} {quality:?}");
+                let [none, twice, opposite] = wrong.each_ref().map(|wrong| !judged(wrong));
+                assert!(none && twice, "{name} {quality:?}");
+                let is_close = subsample == 1;
+                assert!(opposite || !is_close, "{name} {quality:?}");
+            }
+        }
+    }
 }
