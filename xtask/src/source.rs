@@ -44,10 +44,12 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Files that a folder holds at most.
 pub const FILES: usize = 15;
 
-/// Paths of the files of git that match these pathspecs, one a line.
+/// Paths of the files that match these pathspecs and that git tracks or would add, one a line.
 pub fn tracked(root: &Path, specs: &[&str]) -> Outcome {
     let mut git = Command::new("git");
-    git.current_dir(root).args(["ls-files", "--"]).args(specs);
+    git.current_dir(root)
+        .args(["ls-files", "--cached", "--others", "--exclude-standard", "--"])
+        .args(specs);
     let done = git.output().map_err(|e| format!("git: {e}"))?;
     if !done.status.success() {
         return Err(format!("git ls-files: {}", String::from_utf8_lossy(&done.stderr)));

@@ -32,7 +32,6 @@ mod files {
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;
 mod goals;
-mod hillshade;
 mod library_messages;
 mod light;
 mod maps;

@@ -1,5 +1,7 @@
 //! `shadow`, `ao`, `svf` and `openness`: derived answers. Notes and errors of all maps.
 
+mod hillshade;
+
 use std::path::Path;
 
 use crate::needs_vulkan::{done, plane, write_field};

@@ -2,9 +2,9 @@
 
 use serde_json::json;
 
+use super::codes;
 use crate::files::gdal_inputs::{grid, tool};
 use crate::files::geotiff::{gdal_values, gdalinfo};
-use crate::maps::codes;
 use crate::needs_vulkan::{done, write_field};
 use crate::{Folder, read};
 
