@@ -1,5 +1,5 @@
-// Computes: the surface in the layout that rays read: the corners of each cell in one texel, and height and slope of
-// each grid point in another. Optionally initialises the sums of path_trace.
+// Computes: the surface in the layout that rays read: where WRITES_CELLS, the corners of each cell in one texel; and height
+// and slope of each grid point in another. Optionally initialises the sums of path_trace.
 // Reads: heights.
 // Writes: cells (north-west, north-east, south-west, south-east, above the base), ground (height, slope towards east,
 // slope towards north), batch_mean (0 batches), lost_rays (0).
@@ -12,6 +12,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
 // Of a path tracer.
 layout(constant_id = 1) const bool BEGINS_PATHS = false;
+// Off where no ray is traced, and only the ground is read.
+layout(constant_id = 2) const bool WRITES_CELLS = true;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform writeonly image2D cells;
@@ -49,7 +51,9 @@ void main() {
     float sw = texelFetch(heights, ivec2(x.x, y.z), 0).x;
     float s = texelFetch(heights, ivec2(x.y, y.z), 0).x;
     float se = texelFetch(heights, ivec2(x.z, y.z), 0).x;
-    imageStore(cells, ivec2(c, r), vec4(own, e, s, se));
+    if (WRITES_CELLS) {
+        imageStore(cells, ivec2(c, r), vec4(own, e, s, se));
+    }
     // The mean gradient of the adjoining quads: the direction of the sum of their unnormalised normals. Across an
     // axis one grid point wide the slope is 0, and the single line of grid points stands for the quads.
     bool wraps_x = PERIODIC && cols > 1;

@@ -56,7 +56,13 @@ pub fn horizons(
         sweep,
         heights,
         vec![list],
-        &Held { limits, kept_from: None, nodes: Nodes { stride: 1 }, shadows: Vec::new() },
+        &Held {
+            limits,
+            kept_from: None,
+            nodes: Nodes { stride: 1 },
+            shadows: Vec::new(),
+            later_bytes: 0,
+        },
     )?;
     let batches = &lists.batches[0];
     for batch in batches {

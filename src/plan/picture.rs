@@ -22,8 +22,8 @@ use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Held, Lists, prepare, settings};
 use crate::scene::{
-    Albedo, Basis, Border, Bounces, Environment, LightBasis, Method, Quality, Scene, Specular,
-    Wedges,
+    Albedo, Basis, Border, BounceEngine, Bounces, Environment, LightBasis, Method, Quality, Scene,
+    Specular, Wedges,
 };
 use crate::{Error, Result};
 use drawing::Drawing;
@@ -73,6 +73,21 @@ pub struct Picture {
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.
 pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Picture) -> Result<Plan> {
+    let planned = |has_cache| with_cache(scene, quality, limits, (wanted, has_cache));
+    match planned(true) {
+        // Bounces without a visibility cache take longer, and less memory.
+        Err(Error::Limit { .. }) if quality.bounces.count > 1 => planned(false),
+        plan => plan,
+    }
+}
+
+/// The same, with or without a visibility cache for bounces.
+fn with_cache(
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
+    (wanted, has_cache): (Picture, bool),
+) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
     quality.check()?;
     lights.check()?;
@@ -175,7 +190,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &active, wanted);
     let (mut held, mut of_lights) =
-        (Held { limits, kept_from, nodes, shadows: Vec::new() }, Vec::new());
+        (Held { limits, kept_from, nodes, shadows: Vec::new(), later_bytes: 0 }, Vec::new());
     let narrow = active.by_shadow_heights();
     if !narrow.is_empty() && !wanted.unshadowed {
         match Shadows::suit(quality, &sweep, field, surface.border, (limits, builder.bytes())) {
@@ -203,10 +218,32 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (ground, line_blocks)
     });
     let shared = (bounces, images.sky_sum);
-    let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
-    let need_blocks =
+    let room = has_cache.then_some(limits);
+    let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, room, &mut notes);
+    let is_soft = quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some();
+    // Sphere lights in harmonics over pyramids trace no rays.
+    let has_rays = images.sphere_sum.is_some() && !(is_soft && quality.method == Method::Pyramid)
+        || bounces > 0 && quality.bounces.engine == BounceEngine::BruteForce;
+    let need_ground =
         images.sphere_sum.is_some() || (bounces > 0 && !is_walked) || at_nodes.is_some();
-    let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
+    let blocks = need_ground.then(|| Blocks::make(&mut builder, size, surface.border, has_rays));
+    let of_light = (active.is_grey, wanted.light_layers);
+    let bouncing = |builder: &mut Builder, levels, notes: &mut Vec<String>| {
+        let specular = active.specular.is_some().then_some(notes);
+        let (found, read) = ((bounces, at_nodes), (levels, walked));
+        Bouncing::make(builder, scene, quality, found, read, of_light, specular)
+    };
+    if bounces > 0 {
+        // Made once in a plan of their own, to know their size.
+        let mut alone = Builder::new(limits);
+        let levels = match &sweep {
+            Sweep::Pyramid(pyramid) => pyramid.images(&mut alone),
+            _ => None,
+        };
+        let before = alone.bytes();
+        bouncing(&mut alone, levels, &mut Vec::new());
+        held.later_bytes = alone.bytes() - before;
+    }
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
     } else {
@@ -215,16 +252,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (Some(sweeping), lists)
     };
     let levels = sweeping.as_ref().and_then(|s| s.levels);
-    let of_light = (active.is_grey, wanted.light_layers);
-    let bouncing = (bounces > 0).then(|| {
-        let specular = active.specular.is_some().then_some(&mut notes);
-        let (found, read) = ((bounces, at_nodes), (levels, walked));
-        Bouncing::make(&mut builder, scene, quality, found, read, of_light, specular)
-    });
+    let bouncing = (bounces > 0).then(|| bouncing(&mut builder, levels, &mut notes));
     // Suns by shadow heights alone have no settings of sweeps.
     let has_others = lists.lists.len() > of_lights.len();
     let sweep = sweeping.as_ref().filter(|_| has_others).map(|s| &s.sweep);
-    let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
+    let soft = is_soft.then(|| {
         SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)
     });
     if let Some(soft) = &soft {

@@ -179,11 +179,12 @@ fn traced(
     let batch_mean = image("batch_mean", Owner::Internal, rgba, summed);
     let batch_spread = image("batch_spread", Owner::Internal, rgba, summed);
     let lost_rays = builder.buffer("lost_rays", 16, false);
-    let blocks = Blocks::make(&mut builder, size, surface.border);
+    let blocks = Blocks::make(&mut builder, size, surface.border, true);
+    let [cells, maxima] = blocks.of_rays();
     bound.extend([
-        ("cells", blocks.images.cells),
-        ("ground", blocks.images.ground),
-        ("maxima", blocks.images.maxima),
+        ("cells", cells),
+        ("ground", blocks.ground),
+        ("maxima", maxima),
         ("batch_mean", batch_mean),
         ("batch_spread", batch_spread),
         ("lost_rays", lost_rays),

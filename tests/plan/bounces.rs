@@ -102,6 +102,8 @@ fn bounces_at_nodes() {
     assert!(
         plan.find("node_sum").is_none() && !labels(&plan).join(" ").contains("sky_shade bounce")
     );
+    // The ground is made for interpolation; no ray reads its cells.
+    assert!(plan.find("ground").is_some() && plan.find("cells").is_none());
     assert_eq!(missing_barriers(&plan.passes), vec![]);
     let says = |plan: &Plan| plan.notes.iter().any(|note| note.contains("every 4th grid point"));
     assert!(says(&plan), "{:?}", plan.notes);
@@ -137,6 +139,33 @@ fn bounces_at_nodes() {
     assert!(once.find("visibility_cache").is_none() && once.find("node_sum").is_some());
     let none = drawn(&scene, &quality(BounceEngine::Sweep, 0, 2), ROOMY);
     assert!(none.find("node_sum").is_none() && none.find("ground").is_none());
+}
+
+/// More memory never refuses a picture that less memory allows: where the cache leaves too little for the rest, there is none, and a
+/// note.
+#[test]
+fn a_cache_never_exceeds_the_budget() {
+    let scene = under_sky(flat(50, 70));
+    let few = quality(BounceEngine::Sweep, 3, 1);
+    let mut without = 0;
+    for azimuths in [8, 16, 32] {
+        let quality = Quality { bounces: Bounces { azimuths, ..few.bounces }, ..few };
+        let plans = (1..200).map(|bytes_a_texel| {
+            let memory_budget = bytes_a_texel * 50 * 70;
+            let limits = Limits { memory_budget, ..Limits::lavapipe() };
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).ok()?;
+            assert!(plan.bytes() <= memory_budget, "{azimuths}: {}", plan.bytes());
+            Some(plan)
+        });
+        let drawn: Vec<Plan> =
+            plans.skip_while(Option::is_none).map(|plan| plan.expect("fits")).collect();
+        assert!(drawn[0].find("visibility_cache").is_none());
+        assert!(drawn.last().expect("some").find("visibility_cache").is_some());
+        let says =
+            |plan: &&Plan| plan.notes.iter().any(|n| n.ends_with("beyond the memory budget"));
+        without += drawn.iter().filter(says).count();
+    }
+    assert!(without > 0);
 }
 
 /// Walks compute the share of ground on their own lines, once; other engines use that of a sky's light, and

@@ -16,6 +16,7 @@ pub(crate) fn plan(
     [directions, image]: [ResourceId; 2],
 ) {
     let [cells_x, cells_y] = blocks.levels.cells;
+    let [cells, maxima] = blocks.of_rays();
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let words = u64::from(cells_x) * u64::from(cells_y) * u64::from(layers.end - layers.start);
     builder.pass(
@@ -30,12 +31,7 @@ pub(crate) fn plan(
             first_direction: texels.start as i32,
             end_direction: texels.end as i32,
         },
-        &[
-            ("cells", blocks.images.cells),
-            ("maxima", blocks.images.maxima),
-            ("directions", directions),
-            ("facet_mask", image),
-        ],
+        &[("cells", cells), ("maxima", maxima), ("directions", directions), ("facet_mask", image)],
         words * (4 + 16),
         words * 2 * DIRECTIONS_A_WORD as u64,
     );

@@ -16,6 +16,7 @@ pub(crate) fn plan(
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let [thin_rows, thin_cols] = blocks.thin(field);
+    let [cells, maxima] = blocks.of_rays();
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let count = layers.end - layers.start;
     let words = u64::from(cols) * u64::from(rows) * u64::from(count);
@@ -39,9 +40,9 @@ pub(crate) fn plan(
             end_direction: texels.end as i32,
         },
         &[
-            ("cells", blocks.images.cells),
-            ("maxima", blocks.images.maxima),
-            ("ground", blocks.images.ground),
+            ("cells", cells),
+            ("maxima", maxima),
+            ("ground", blocks.ground),
             ("directions", directions),
             ("visible_points", image),
         ],

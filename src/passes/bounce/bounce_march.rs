@@ -17,6 +17,7 @@ pub(crate) fn plan(
     let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
+    let [cells, maxima] = blocks.of_rays();
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
     let each = blocks.levels.lookups();
     for part in builder.parts(0..azimuths, [across, along], each, at_once) {
@@ -43,9 +44,9 @@ pub(crate) fn plan(
                 first_row: rows.start as i32,
             },
             &[
-                ("cells", blocks.images.cells),
-                ("maxima", blocks.images.maxima),
-                ("ground", blocks.images.ground),
+                ("cells", cells),
+                ("maxima", maxima),
+                ("ground", blocks.ground),
                 ("exit_radiance", bounce.exit),
                 ("bounce_sum", sum),
             ],

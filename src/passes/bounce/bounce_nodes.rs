@@ -44,14 +44,14 @@ pub(crate) struct BounceNodes {
 
 impl BounceNodes {
     /// None where all bounces are found at every grid point, or without bounces. `sky_share` is that of other lights;
-    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and there is
-    /// room for it. Where there is none, walks from every grid point find all bounces.
+    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and `limits`
+    /// have room for it. Without a cache, walks from every grid point find all bounces.
     pub(crate) fn make(
         builder: &mut Builder,
         size: [u32; 2],
         quality: &Quality,
         (count, sky_share): (u32, Option<ResourceId>),
-        limits: &Limits,
+        limits: Option<&Limits>,
         notes: &mut Vec<String>,
     ) -> Option<Self> {
         let stride = quality.subsample;
@@ -104,26 +104,29 @@ impl BounceNodes {
     }
 }
 
-/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget.
+/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget; none without `limits`.
 fn cache(
     builder: &mut Builder,
     (size, nodes): ([u32; 2], Nodes),
     quality: &Quality,
-    limits: &Limits,
+    limits: Option<&Limits>,
     notes: &mut Vec<String>,
 ) -> Option<ResourceId> {
     let layers = quality.bounces.azimuths;
     let [across, along] = nodes.size(size);
     let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 16;
+    let taken = format!(
+        "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers",
+        bytes_text(bytes)
+    );
+    let Some(limits) = limits else {
+        notes.push(format!("{taken}, beyond the memory budget"));
+        return None;
+    };
     let left = limits.memory_budget.saturating_sub(builder.bytes());
     let room = (left / 4).min(limits.allocation_bytes);
     if bytes > room || layers > limits.image_layers {
-        notes.push(format!(
-            "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers, of {} in {}",
-            bytes_text(bytes),
-            bytes_text(room),
-            limits.image_layers
-        ));
+        notes.push(format!("{taken}, of {} in {}", bytes_text(room), limits.image_layers));
         return None;
     }
     notes.push(format!(

@@ -15,8 +15,8 @@ use crate::passes::pyramid::{Octave, Pyramid};
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Sweeping, part};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, height_cells,
-    pyramid_march, shade_expand, shade_reduce, sky_shade, specular_gather, vector_reduce,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, pyramid_march,
+    shade_expand, shade_reduce, sky_shade, specular_gather, vector_reduce,
 };
 use crate::scene::{Border, BounceEngine, Bounces, HeightField, Levels, Quality, Scene, Surface};
 
@@ -147,28 +147,9 @@ impl Bouncing {
         self.exits.len()
     }
 
-    /// The passes before the first bounce. `is_planned`: those of the blocks are in the plan.
-    pub(crate) fn prepare(
-        &self,
-        builder: &mut Builder,
-        scene: &Scene,
-        blocks: Option<&Blocks>,
-        (heights, is_planned): (ResourceId, bool),
-    ) {
-        let Some(blocks) = blocks else { return };
-        let pyramids = match &self.engine {
-            Engine::Brute if is_planned => return,
-            Engine::Brute => return blocks.plan(builder, &scene.field, heights, None),
-            Engine::Sweep(..) if self.at_nodes.is_none() => return,
-            Engine::Sweep(..) => None,
-            Engine::Pyramid(pyramids) => Some(pyramids),
-        };
-        if !is_planned {
-            let of = (&scene.field, scene.surface.border);
-            let ids = [heights, blocks.images.cells, blocks.images.ground];
-            height_cells::plan(builder, of, ids, None);
-        }
-        let Some(pyramids) = pyramids else { return };
+    /// The passes before the first bounce, besides those of the blocks.
+    pub(crate) fn prepare(&self, builder: &mut Builder, heights: ResourceId) {
+        let Engine::Pyramid(pyramids) = &self.engine else { return };
         if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
             pyramids.heights.plan(builder, heights, images);
         }
@@ -200,7 +181,7 @@ impl Bouncing {
             at_nodes: self.at_nodes.and_then(|at| at.of_bounce(k)),
         };
         let size = [scene.field.cols() as u32, scene.field.rows() as u32];
-        let blocks = || blocks.expect("made for engines that read cells and ground");
+        let blocks = || blocks.expect("made for engines that read the ground");
         match &self.engine {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
             Engine::Sweep(ground, line_blocks) => {
@@ -228,13 +209,13 @@ impl Bouncing {
                 }
             }
             Engine::Pyramid(of) => {
-                let ids = [heights, blocks().images.ground];
+                let ids = [heights, blocks().ground];
                 let how = (of, self.specular.as_ref(), self.azimuths);
                 gather(builder, &scene.field, how, &bounce, ids);
             }
         }
         if let Some(at) = self.at_nodes.filter(|_| bounce.at_nodes.is_some()) {
-            let ids = [blocks().images.ground, at.sky_share];
+            let ids = [blocks().ground, at.sky_share];
             bounce_shade::plan(builder, &scene.field, &bounce, ids);
         }
         (self.sum, self.exits[k - 1])

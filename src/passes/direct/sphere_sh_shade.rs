@@ -104,10 +104,11 @@ fn dispatch(
     let [r, g, b] = light.radiance;
     let begins = shading.begins && azimuths.start == 0;
     let mut bound =
-        vec![("ground", blocks.images.ground), ("sphere_sum", sum), ("constants", soft.constants)];
+        vec![("ground", blocks.ground), ("sphere_sum", sum), ("constants", soft.constants)];
     let levels = match &soft.pyramid {
         None => {
-            bound.extend([("cells", blocks.images.cells), ("maxima", blocks.images.maxima)]);
+            let [cells, maxima] = blocks.of_rays();
+            bound.extend([("cells", cells), ("maxima", maxima)]);
             None
         }
         Some((pyramid, images)) => {

@@ -146,17 +146,14 @@ fn dispatch(
     let Rectangle { col, row, cols, rows } = shading.rectangle;
     let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
+    let [cells, maxima] = blocks.of_rays();
     let [r, g, b] = light.radiance;
     let begins = shading.begins && slices.start == 0;
     let specular = shading.specular;
     let specular_begins = specular.is_some_and(|s| s.begins) && slices.start == 0;
     let phong = specular.map(|s| s.phong.constant);
-    let mut bound = vec![
-        ("cells", blocks.images.cells),
-        ("maxima", blocks.images.maxima),
-        ("ground", blocks.images.ground),
-        ("sphere_sum", sum),
-    ];
+    let mut bound =
+        vec![("cells", cells), ("maxima", maxima), ("ground", blocks.ground), ("sphere_sum", sum)];
     bound.extend(specular.map(|s| ("specular_sum", s.specular_sum)));
     bound.extend(specular.and_then(|s| s.phong.map).map(|map| ("phong_map", map)));
     builder.pass(

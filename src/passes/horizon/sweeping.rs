@@ -191,6 +191,8 @@ pub(crate) struct Held<'a> {
     pub nodes: Nodes,
     /// The lists of lights by shadow heights.
     pub shadows: Vec<usize>,
+    /// Bytes of images that are made after those of the sweep, for which lattices leave room.
+    pub later_bytes: u64,
 }
 
 /// Makes the sweep's images within the remaining budget, and cuts the lists into batches.
@@ -203,7 +205,7 @@ pub(crate) fn prepare(
     mut lists: Vec<Vec<Azimuth>>,
     held: &Held,
 ) -> Result<(Sweeping, Lists)> {
-    let Held { limits, kept_from, nodes, shadows } = held;
+    let Held { limits, kept_from, nodes, shadows, later_bytes } = held;
     let nodes = *nodes;
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
@@ -235,7 +237,7 @@ pub(crate) fn prepare(
         _ => None,
     };
     let shadow_lattice = Sweep::of_words(size, limits);
-    let before_lattices = builder.bytes();
+    let before_lattices = builder.bytes() + later_bytes;
     let grouped = |lists: &[Vec<Azimuth>], layer_shift| {
         let each = (nodes, layer_shift);
         let of_light = Group::of(lists, &sweep, &axes, each, |l| !shadows.contains(&l));
@@ -254,7 +256,7 @@ pub(crate) fn prepare(
     };
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullStorage::Occluders);
-    let so_far = builder.bytes();
+    let so_far = builder.bytes() + later_bytes;
     let mut make = |list: usize, axis: Axis, layers: u32, suffix: &str| {
         let shape = shape_of(list, axis);
         let is_shadow = shadows.contains(&list);

@@ -14,18 +14,13 @@ pub(crate) struct BlockLevels {
     border: Border,
 }
 
-/// What rays over the surface read: its cells, and the maximum height of blocks of cells, to skip by.
+/// The ground, and what rays over it read.
 pub(crate) struct Blocks {
     pub levels: BlockLevels,
-    pub images: BlockImages,
-}
-
-/// Images of the field's size, and one of all levels.
-#[derive(Clone, Copy)]
-pub(crate) struct BlockImages {
-    pub cells: ResourceId,
+    /// Height and slopes of each grid point.
     pub ground: ResourceId,
-    pub maxima: ResourceId,
+    /// Where rays are traced: the cells, and the maximum height of blocks of cells, to skip by, all levels in one image.
+    of_rays: Option<[ResourceId; 2]>,
 }
 
 impl BlockLevels {
@@ -87,16 +82,28 @@ impl BlockLevels {
 }
 
 impl Blocks {
-    pub(crate) fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
+    /// `has_rays`: whether anything reads more than the ground.
+    pub(crate) fn make(
+        builder: &mut Builder,
+        size: [u32; 2],
+        border: Border,
+        has_rays: bool,
+    ) -> Self {
         let levels = BlockLevels::of(size, border);
         let [width, height] = size;
         let mut image = |name: &str| {
             let extent = [width, height, 1];
             builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
         };
-        let (cells, ground) = (image("cells"), image("ground"));
-        let images = BlockImages { cells, ground, maxima: levels.maxima(builder, "maxima") };
-        Self { levels, images }
+        let cells = has_rays.then(|| image("cells"));
+        let ground = image("ground");
+        let of_rays = cells.map(|cells| [cells, levels.maxima(builder, "maxima")]);
+        Self { levels, ground, of_rays }
+    }
+
+    /// What passes that trace rays bind besides the ground: cells and maxima.
+    pub(crate) fn of_rays(&self) -> [ResourceId; 2] {
+        self.of_rays.expect("made for rays")
     }
 
     /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
@@ -107,21 +114,11 @@ impl Blocks {
         heights: ResourceId,
         paths: Option<[ResourceId; 2]>,
     ) {
-        self.plan_ground(builder, field, heights, paths);
-        let BlockImages { cells, maxima, .. } = self.images;
-        self.levels.plan(builder, "", Source::Cells(cells), maxima);
-    }
-
-    /// The same without the levels: for passes that need only the ground.
-    pub(crate) fn plan_ground(
-        &self,
-        builder: &mut Builder,
-        field: &HeightField,
-        heights: ResourceId,
-        paths: Option<[ResourceId; 2]>,
-    ) {
-        let BlockImages { cells, ground, .. } = self.images;
-        height_cells::plan(builder, (field, self.levels.border), [heights, cells, ground], paths);
+        let (of, cells) = ((field, self.levels.border), self.of_rays.map(|[cells, _]| cells));
+        height_cells::plan(builder, of, [heights, self.ground], cells, paths);
+        if let Some([cells, maxima]) = self.of_rays {
+            self.levels.plan(builder, "", Source::Cells(cells), maxima);
+        }
     }
 
     /// Whether the field is one grid point wide along rows, along columns: only rays along such a line hit it.

@@ -1,26 +1,33 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, HeightField};
 
-/// Heights by cell, as rays read them. Clears the sums of `paths`, where there are any.
+/// The ground of each grid point and, for rays, heights by cell. Clears the sums of `paths`, where there are any.
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
-    [heights, cells, ground]: [ResourceId; 3],
+    [heights, ground]: [ResourceId; 2],
+    cells: Option<ResourceId>,
     paths: Option<[ResourceId; 2]>,
 ) {
-    let mut bound = vec![("heights", heights), ("cells", cells), ("ground", ground)];
+    let mut bound = vec![("heights", heights), ("ground", ground)];
+    bound.extend(cells.map(|cells| ("cells", cells)));
     if let Some([batch_mean, lost_rays]) = paths {
         bound.extend([("batch_mean", batch_mean), ("lost_rays", lost_rays)]);
     }
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let grid_points = u64::from(cols) * u64::from(rows);
+    let written = 1 + u64::from(cells.is_some()) + u64::from(paths.is_some());
     builder.pass(
         shaders::HeightCells {
             periodic: border == Border::Periodic,
             begins_paths: paths.is_some(),
+            writes_cells: cells.is_some(),
         },
         "",
-        "so that one fetch reads a cell; light needs the normals of texels",
+        match cells {
+            Some(_) => "so that one fetch reads a cell; light needs the normals of texels",
+            None => "light needs the normals of texels",
+        },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &shaders::HeightCellsPush {
             cols: cols as i32,
@@ -29,7 +36,7 @@ pub(crate) fn plan(
             cell_y_m: field.cell_m()[1] as f32,
         },
         &bound,
-        grid_points * (4 + if paths.is_some() { 3 } else { 2 } * 16),
+        grid_points * (4 + written * 16),
         grid_points,
     );
 }

@@ -107,12 +107,12 @@ impl<'a> Begun<'a> {
         let heights = builder.image("heights", Owner::Input, Format::R32Float, extent, false);
         let all = images(&mut builder, size, directions.count(), Owner::Internal, limits)?;
         let points = one_image(field, directions, &all, limits)?;
-        let blocks = Blocks::make(&mut builder, size, border);
+        let blocks = Blocks::make(&mut builder, size, border, true);
         blocks.plan(&mut builder, field, heights, None);
         let (buffer, first) = builder.constants(&texels(directions));
         let image = all.into_iter().next().expect("one image");
         plan_batch(&mut builder, (field, border), &blocks, (buffer, first), directions, image);
-        let ground = blocks.images.ground;
+        let ground = blocks.ground;
         Ok(Self { field, border, directions, size, builder, points, ground, buffer, first })
     }
 

@@ -32,7 +32,7 @@ pub fn facet_mask(
     let mut builder = Builder::new(limits);
     let heights =
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
-    let blocks = Blocks::make(&mut builder, size, border);
+    let blocks = Blocks::make(&mut builder, size, border, true);
     let [cells_x, cells_y] = blocks.levels.cells;
     let count = directions.count();
     let layers = count.div_ceil(DIRECTIONS_A_WORD) as u32;

@@ -112,13 +112,10 @@ pub fn scatter_views(
             bound.push(("phong_map", image("phong", Owner::Input, rgba)));
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
-        let blocks = Blocks::make(&mut builder, size, surface.border);
-        bound.push(("ground", blocks.images.ground));
         let suns = wanted.towards_suns()?;
-        match &suns {
-            Some(_) => blocks.plan(&mut builder, field, heights, None),
-            None => blocks.plan_ground(&mut builder, field, heights, None),
-        }
+        let blocks = Blocks::make(&mut builder, size, surface.border, suns.is_some());
+        bound.push(("ground", blocks.ground));
+        blocks.plan(&mut builder, field, heights, None);
         let steps = wanted.steps();
         let order = order(directions.vectors(), scatter, wanted.paths, steps);
         let (links, first_link) =
@@ -144,7 +141,7 @@ pub fn scatter_views(
         if scatter.curvature != Curvature::FLAT {
             let one = one_image(field, directions, &points, limits)?;
             let bends = Bends::make(&mut builder, size, directions, limits)?;
-            let ids = [one, blocks.images.ground];
+            let ids = [one, blocks.ground];
             bends.plan(&mut builder, (field, surface.border), scatter.curvature, ids);
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));

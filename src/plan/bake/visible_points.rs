@@ -35,7 +35,7 @@ pub fn visible_points(
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     let images = images(&mut builder, size, directions.count(), Owner::Output, limits)?;
-    let blocks = Blocks::make(&mut builder, size, border);
+    let blocks = Blocks::make(&mut builder, size, border, true);
     blocks.plan(&mut builder, field, heights, None);
     let (buffer, first) = builder.constants(&texels(directions));
     for (image, layers) in images {

@@ -254,12 +254,8 @@ impl Drawing<'_> {
     /// Sphere lights share one sum; with layers, each starts its own.
     fn sphere_lights(&mut self, quality: &Quality) {
         let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
-        let (field, heights) = (&self.scene.field, self.images.heights);
-        if self.soft.as_ref().is_some_and(|s| s.pyramid.is_some()) {
-            blocks.plan_ground(&mut self.builder, field, heights, None);
-        } else {
-            blocks.plan(&mut self.builder, field, heights, None);
-        }
+        let heights = self.images.heights;
+        blocks.plan(&mut self.builder, &self.scene.field, heights, None);
         let names: Vec<String> = self.active.near.active.iter().map(NearLight::label).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
@@ -288,10 +284,11 @@ impl Drawing<'_> {
         let Some(bouncing) = self.bouncing.take() else { return };
         let batches = lists.batches.last().map(Vec::as_slice);
         let Images { heights, radiance, sphere_sum, .. } = self.images;
-        // Sphere lights in harmonics over pyramids do not compute the maxima.
-        let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
-        let begun = (heights, sphere_sum.is_some() && !ground_alone);
-        bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
+        // Sphere lights have filled the blocks before.
+        if let Some(blocks) = self.blocks.as_ref().filter(|_| sphere_sum.is_none()) {
+            blocks.plan(&mut self.builder, &self.scene.field, heights, None);
+        }
+        bouncing.prepare(&mut self.builder, heights);
         self.plan_specular_exit(&bouncing, 0);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];

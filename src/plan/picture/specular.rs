@@ -245,7 +245,7 @@ impl Drawing<'_> {
             eye_m: self.eye_m,
         };
         let field = (size, self.scene.field.cell_m());
-        let ground = blocks.images.ground;
+        let ground = blocks.ground;
         specular_exit::plan(&mut self.builder, field, (&specular, phong), ground, &exit);
     }
 
