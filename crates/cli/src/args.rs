@@ -241,8 +241,8 @@ pub struct RenderArgs {
     pub input: Input,
     /// Output: .png (sRGB), .tif or .exr (linear, layers)
     ///
-    /// All store the settings used as metadata. A .tif is a GeoTIFF and lies where the input lies. A .png of a georeferenced input has a world
-    /// file (.pgw) beside it.
+    /// All store the settings used as metadata. A .tif is a GeoTIFF and lies where the input lies. A .png of a georeferenced input has its position
+    /// in files beside it (.pgw, .png.aux.xml).
     #[arg(short, long, value_name = "OUT.{png,tif,exr}", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -173,6 +173,12 @@ impl Georeference {
         let [east, north] = [self.corner[0] + 0.5 * width, self.corner[1] - 0.5 * height];
         format!("{width}\n0\n0\n{}\n{east}\n{north}\n", -height)
     }
+
+    /// The text of GDAL's `.aux.xml` with the horizontal coordinate reference system, if it has an EPSG code.
+    pub fn pam(&self) -> Option<String> {
+        let code = self.keys.defined_by_code()?;
+        Some(format!("<PAMDataset>\n  <SRS>EPSG:{code}</SRS>\n</PAMDataset>\n"))
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-//! Where the pixels of a PNG map lie: its world file, and notes.
+//! Where the pixels of a PNG map lie: the files beside it, and notes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ridgelight::Result;
 use ridgelight::scene::HeightField;
@@ -10,23 +10,39 @@ use ridgelight_io::Georeference;
 use crate::args::Input;
 use crate::setup;
 
-/// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
-/// system.
+/// Writes what states where the pixels of a PNG lie: its world file and, where the coordinate reference system has a code, the
+/// file from which GDAL and QGIS read that.
 pub fn write(picture: &Path, input: &Input, georeference: Option<&Georeference>) -> Result<()> {
-    let path = picture.with_extension("pgw");
-    match georeference {
-        Some(georeference) => files::write_text(&path, &georeference.world_file()),
+    let input = input.first().display();
+    let [world, system] = files_of(picture);
+    let Some(at) = georeference else {
+        warn_of_stale(picture, &format!("{input} states no position"));
+        return Ok(());
+    };
+    files::write_text(&world, &at.world_file())?;
+    match at.pam() {
+        Some(text) => files::write_text(&system, &text),
         None => {
-            let why = format!("{} states no position", input.first().display());
-            warn_of_stale(picture, &why);
+            let why = format!("{input} states no coordinate reference system with an EPSG code");
+            warn_of(&system, &why);
             Ok(())
         }
     }
 }
 
-/// A warning where a world file of an earlier picture stands beside one that has none.
+/// The world file beside a PNG, and the file of its coordinate reference system.
+fn files_of(picture: &Path) -> [PathBuf; 2] {
+    let mut name = picture.as_os_str().to_owned();
+    name.push(".aux.xml");
+    [picture.with_extension("pgw"), name.into()]
+}
+
+/// A warning where files of an earlier picture stand beside one that has none.
 pub fn warn_of_stale(picture: &Path, why: &str) {
-    let path = picture.with_extension("pgw");
+    files_of(picture).iter().for_each(|path| warn_of(path, why));
+}
+
+fn warn_of(path: &Path, why: &str) {
     if path.exists() {
         setup::warning(&format!("{} belongs to another picture, because {why}", path.display()));
     }

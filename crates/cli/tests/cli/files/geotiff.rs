@@ -141,19 +141,30 @@ fn gpu_a_picture_has_a_world_file() {
     done(&folder, "render utm.tif -o o.png --azimuths 8");
     let world = std::fs::read_to_string(folder.path("o.pgw")).unwrap();
     assert_eq!(world, "10\n0\n0\n-20\n500005\n5099990\n");
+    // The reference system of the input, as GDAL reads it; none without the file beside the picture.
+    let system = |name: &str| gdalinfo(&folder.path(name))["stac"]["proj:epsg"].clone();
+    assert_eq!((system("utm.tif"), system("o.png")), (json!(32633), json!(32633)));
+    let beside = folder.path("o.png.aux.xml");
+    let kept = std::fs::read(&beside).unwrap();
+    std::fs::remove_file(&beside).unwrap();
+    assert_eq!(system("o.png"), json!(null));
+    std::fs::write(&beside, kept).unwrap();
     done(&folder, "horizon utm.tif -o h.png --azimuths 4");
     assert_eq!(std::fs::read_to_string(folder.path("h.pgw")).unwrap(), world);
     // A picture without a position leaves the file alone and warns.
     let run = folder.run_str("render a.npy -o o.png --azimuths 8");
     assert_eq!(run.status, Some(0), "{}", run.err);
-    assert!(run.err.contains("warning: o.pgw belongs to another picture"), "{}", run.notes);
+    for file in ["o.pgw", "o.png.aux.xml"] {
+        let warning = format!("warning: {file} belongs to another picture");
+        assert!(run.err.contains(&warning), "{}", run.notes);
+    }
     assert_eq!(std::fs::read_to_string(folder.path("o.pgw")).unwrap(), world);
     let run = folder.run_str("render utm.tif -o o.png --azimuths 8 --camera south --size 32x18");
     assert_eq!(run.status, Some(0), "{}", run.err);
     let note = "warning: o.pgw belongs to another picture, because this one is a camera view";
     assert!(run.err.contains(note), "{}", run.err);
     done(&folder, "render a.npy -o p.png --azimuths 8");
-    assert!(!folder.path("p.pgw").exists());
+    assert!(!folder.path("p.pgw").exists() && !folder.path("p.png.aux.xml").exists());
 }
 
 pub fn gdalinfo(path: &Path) -> Value {

@@ -91,6 +91,6 @@ fn gpu_two_runs_write_the_same_bytes() {
     assert!(of("hillshade.npy") != of("other_sun.npy"));
     // The types of docs/command-line.md and docs/baking.md.
     let types = first.keys().filter_map(|path| path.extension()?.to_str());
-    let all = ["dds", "exr", "glsl", "json", "ktx2", "npy", "pgw", "png", "tif"];
+    let all = ["dds", "exr", "glsl", "json", "ktx2", "npy", "pgw", "png", "tif", "xml"];
     assert_eq!(types.collect::<BTreeSet<_>>(), BTreeSet::from(all));
 }
