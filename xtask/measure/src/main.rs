@@ -38,7 +38,11 @@ type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
 const PROGRAMS: [Program; 33] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
-    ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
+    (
+        "auto",
+        "FOLDER [--fit] [--side N] [--seconds S] [--specular N] [--only TEXT] [--json FILE]",
+        auto::run,
+    ),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
     ("bleed", "-o PICTURE.png", pictures::bleed),
     ("bounce", "[FOLDER] [--side N] [--spp N] [--rim N] [-o FILE.svg]", bounce::run),

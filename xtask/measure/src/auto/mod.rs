@@ -8,7 +8,8 @@
 //! field and every light is in both halves, and no pair is. For each error it prints the choice, its
 //! true error, and its time over that of the fastest settings that truly meet the goal. These are
 //! the best of a `trade` walk of S (20) seconds and of all choices.
-//! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4.
+//! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4. `--only TEXT` takes only pairs
+//! whose name contains it.
 
 mod fit;
 mod report;
@@ -165,10 +166,11 @@ fn judged_while<P>(
 pub fn run(mut args: Args) -> Outcome {
     let (is_fitted, side) = (args.has("--fit"), args.number("--side", 256)?);
     let (seconds, json) = (args.number("--seconds", 20.0)?, args.path("--json")?);
-    let exponent = args.value("--specular")?;
+    let (exponent, only) = (args.value("--specular")?, args.value::<String>("--only")?);
     let folder = args.folder().ok_or("expected FOLDER")?;
     let mut gpu = args.open()?;
-    let scenes = scenes(&folder, side, is_fitted, exponent)?;
+    let mut scenes = scenes(&folder, side, is_fitted, exponent)?;
+    scenes.retain(|(name, _)| only.as_ref().is_none_or(|only| name.contains(only)));
     let of = (side, &scenes[..]);
     match is_fitted {
         true => Ok(fit::fit(&mut gpu, of)?),

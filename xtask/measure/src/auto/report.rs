@@ -149,6 +149,12 @@ impl<'a> Measuring<'a> {
             Err(why) => return Ok(json!({ "asked": most, "best": best_flags, "refused": why })),
         };
         let quality = found.trial.quality;
+        let trials: Vec<Value> = (found.trials.iter())
+            .map(|t| {
+                let Measured { error, at_most } = t.measured;
+                json!({ "settings": flags(&t.quality, scene), "measured": error, "at_most": at_most, "ms": t.ns / 1e6 })
+            })
+            .collect();
         let error = self.error(&judged(gpu, scene, &quality)?.planes);
         let ratio = match best {
             Some(best) if best != quality => {
@@ -162,7 +168,8 @@ impl<'a> Measuring<'a> {
             "expected": found.expected.error, "measured": found.trial.measured.error,
             "at_most": found.trial.measured.at_most, "true": error.error,
             "true_at_most": error.at_most, "reference_error": self.own.error,
-            "holds": error.error <= most, "time_over_best": ratio, "tried": found.trials.len(),
+            "holds": error.error <= most, "time_over_best": ratio, "tried": trials.len(),
+            "trials": trials, "probes": found.probes,
             "seconds": seconds,
         }))
     }
