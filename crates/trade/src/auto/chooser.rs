@@ -160,6 +160,7 @@ impl<'a> Chooser<'a> {
                 self.model.learn(&trial.quality, error, spread);
             }
         }
+        self.model.share_residuals();
     }
 
     /// Records error and nanoseconds of settings rendered again.

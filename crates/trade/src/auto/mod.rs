@@ -9,6 +9,7 @@ mod bounced;
 mod candidates;
 mod chooser;
 mod fitted;
+mod misfit;
 mod model;
 mod oracle_light;
 mod picks;

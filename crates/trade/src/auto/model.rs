@@ -3,6 +3,7 @@
 
 use super::bounced::{self, BouncedLight};
 use super::fitted::{FITTED, GEOMETRY};
+use super::misfit::Misfit;
 use super::statistics::Statistics;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 
@@ -118,6 +119,9 @@ pub struct Model {
     logs: [Option<f64>; ALL],
     covariance: [[f64; ALL]; ALL],
     bounced: Option<BouncedLight>,
+    /// ln of the measured errors, in the order of learning.
+    measured: Vec<(Quality, f64)>,
+    misfit: Misfit,
 }
 
 impl Model {
@@ -127,7 +131,13 @@ impl Model {
         let bounced = (bounces > 0).then(|| BouncedLight::of(scene, statistics));
         // No scene of the fit has specular: a factor e more.
         let unfitted = if scene.surface.specular.is_some() { 1.0 } else { 0.0_f64 };
-        let mut model = Self { logs: [None; ALL], covariance: [[0.0; ALL]; ALL], bounced };
+        let mut model = Self {
+            logs: [None; ALL],
+            covariance: [[0.0; ALL]; ALL],
+            bounced,
+            measured: Vec::new(),
+            misfit: Misfit::default(),
+        };
         for (i, (log, spread)) in bounced.iter().flat_map(BouncedLight::guess).enumerate() {
             model.logs[PARTS.len() + i] = Some(log);
             model.covariance[PARTS.len() + i][PARTS.len() + i] = spread.powi(2);
@@ -174,7 +184,9 @@ impl Model {
     /// Expected error of settings.
     pub fn expected(&self, quality: &Quality) -> Expected {
         let (shares, sum) = self.shares(quality);
-        Expected { error: sum.sqrt(), factor: self.variance(&shares).0.max(0.0).sqrt().exp() }
+        let (residual, left) = self.misfit.at(quality);
+        let variance = self.variance(&shares).0.max(0.0) * left;
+        Expected { error: sum.sqrt() * residual.exp(), factor: variance.sqrt().exp() }
     }
 
     /// Adds a measured relative RMSE; `spread` is the standard deviation of its ln.
@@ -207,6 +219,15 @@ impl Model {
                 self.covariance[i][j] -= with[i] * with[j] / (variance + noise);
             }
         }
+        self.measured.push((*quality, measured));
+    }
+
+    /// Shares what the parts do not explain of the learnt errors with similar settings.
+    pub fn share_residuals(&mut self) {
+        let residual = |quality: &Quality, ln: f64| ln - 0.5 * self.shares(quality).1.ln();
+        let residuals: Vec<_> =
+            self.measured.iter().map(|(q, ln)| (*q, residual(q, *ln))).collect();
+        self.misfit = Misfit::of(&residuals);
     }
 
     fn log(&self, part: usize) -> f64 {

@@ -361,6 +361,10 @@ fn choose_by(
     let (mut pilots, mut refused) = (Vec::new(), None);
     for mut quality in [defaults(scene), coarse()] {
         quality.bounces.count = count;
+        if count == 0 {
+            // As candidates have them, so that none is drawn twice.
+            (quality.bounces, quality.subsample) = (start().bounces, start().subsample);
+        }
         match draw(&quality) {
             Err(limit @ Error::Limit { .. }) => {
                 chooser.refuse(&quality);
