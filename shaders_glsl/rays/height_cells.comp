@@ -1,5 +1,5 @@
-// Computes: the surface in the layout that rays read: where WRITES_CELLS, the corners of each cell in one texel; and height
-// and slope of each grid point in another. Optionally initialises the sums of path_trace.
+// Computes: height and slope of each grid point; if WRITES_CELLS, also the corners of each cell in one texel, as rays read them.
+// Optionally initialises the sums of path_trace.
 // Reads: heights.
 // Writes: cells (north-west, north-east, south-west, south-east, above the base), ground (height, slope towards east,
 // slope towards north), batch_mean (0 batches), lost_rays (0).
@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
 // Of a path tracer.
 layout(constant_id = 1) const bool BEGINS_PATHS = false;
-// Off where no ray is traced, and only the ground is read.
+// False if no pass traces rays.
 layout(constant_id = 2) const bool WRITES_CELLS = true;
 
 layout(binding = 0) uniform texture2D heights;

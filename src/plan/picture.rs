@@ -75,13 +75,13 @@ pub struct Picture {
 pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Picture) -> Result<Plan> {
     let planned = |has_cache| with_cache(scene, quality, limits, (wanted, has_cache));
     match planned(true) {
-        // Bounces without a visibility cache take longer, and less memory.
+        // Without a visibility cache, bounces take more time and less memory.
         Err(Error::Limit { .. }) if quality.bounces.count > 1 => planned(false),
         plan => plan,
     }
 }
 
-/// The same, with or without a visibility cache for bounces.
+/// Plans a picture, with or without a visibility cache for bounces.
 fn with_cache(
     scene: &Scene,
     quality: &Quality,
@@ -234,7 +234,7 @@ fn with_cache(
         Bouncing::make(builder, scene, quality, found, read, of_light, specular)
     };
     if bounces > 0 {
-        // Made once in a plan of their own, to know their size.
+        // Makes the images of bounces in a plan of their own first, to measure their bytes.
         let mut alone = Builder::new(limits);
         let levels = match &sweep {
             Sweep::Pyramid(pyramid) => pyramid.images(&mut alone),

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::source::{Outcome, files, read, tracked};
+use crate::source::{Outcome, files, listed, read};
 
 /// Pages whose paths are checked.
 const PAGES: [&str; 3] = ["CONTRIBUTING.md", "docs/adding/index.md", "docs/architecture.md"];
@@ -39,7 +39,7 @@ pub fn check(root: &Path) -> Outcome {
 /// Files and folders of the repository, and the files that the trials of docs/adding make.
 fn known(root: &Path) -> Result<BTreeSet<String>, String> {
     let mut all = BTreeSet::new();
-    for path in tracked(root, &["."])?.lines() {
+    for path in listed(root, &["."])?.lines() {
         all.extend(Path::new(path).ancestors().filter_map(Path::to_str).map(str::to_owned));
     }
     for trial in files(&root.join("docs/adding"), &["diff"]) {

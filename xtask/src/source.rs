@@ -44,22 +44,25 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Files that a folder holds at most.
 pub const FILES: usize = 15;
 
-/// Paths of the files that match these pathspecs and that git tracks or would add, one a line.
-pub fn tracked(root: &Path, specs: &[&str]) -> Outcome {
+/// Paths of the files that match these pathspecs and that git tracks or would add, one per line.
+pub fn listed(root: &Path, specs: &[&str]) -> Outcome {
     let mut git = Command::new("git");
     git.current_dir(root)
-        .args(["ls-files", "--cached", "--others", "--exclude-standard", "--"])
+        .args(["ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate", "--"])
         .args(specs);
     let done = git.output().map_err(|e| format!("git: {e}"))?;
     if !done.status.success() {
         return Err(format!("git ls-files: {}", String::from_utf8_lossy(&done.stderr)));
     }
-    Ok(String::from_utf8_lossy(&done.stdout).into_owned())
+    let all = String::from_utf8_lossy(&done.stdout);
+    // Without files that are deleted and not staged.
+    let here = all.lines().filter(|path| root.join(path).symlink_metadata().is_ok());
+    Ok(here.map(|path| format!("{path}\n")).collect())
 }
 
 /// Folders with more than [`FILES`] files of git, and their number; results of measurements left out.
 pub fn crowded(root: &Path) -> Result<Vec<String>, String> {
-    Ok(above(&tracked(root, &[".", ":!benches/results"])?))
+    Ok(above(&listed(root, &[".", ":!benches/results"])?))
 }
 
 /// The same of a list of paths.

@@ -45,7 +45,7 @@ fn rules(text: &str) -> Result<Vec<Rule>, String> {
     Ok(all)
 }
 
-/// Lines of the tracked files that match a Perl pattern, CHANGELOG.md and the table of old names aside.
+/// Lines that match a Perl pattern, of files that git tracks or would add, CHANGELOG.md and the table of old names aside.
 fn grep(root: &Path, pattern: &str, left_out: &[String]) -> Result<Vec<String>, String> {
     let paths = [
         ".",
@@ -59,7 +59,7 @@ fn grep(root: &Path, pattern: &str, left_out: &[String]) -> Result<Vec<String>, 
     ];
     let mut git = Command::new("git");
     git.current_dir(root)
-        .args(["grep", "--no-color", "-I", "-n", "-i", "-P", "-e", pattern, "--"])
+        .args(["grep", "--untracked", "--no-color", "-I", "-n", "-i", "-P", "-e", pattern, "--"])
         .args(paths)
         .args(left_out);
     let done = git.output().map_err(|e| format!("git: {e}"))?;

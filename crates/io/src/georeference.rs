@@ -91,7 +91,14 @@ impl GeoKeys {
 
     /// [`epsg`](Self::epsg), but not of the geographic system that a projection of one's own uses.
     fn defined_by_code(&self) -> Option<u16> {
-        let is_own = self.entries.iter().any(|e| e[0] == PROJECTED_CRS && e[3] == 32767);
+        // A projection by a private code, or by its parameters; or projected coordinates without a code.
+        let is_projected = |e: &[u16; 4]| {
+            (PROJECTED_CRS..4096).contains(&e[0]) && e[0] != PROJECTED_CRS
+                || e[0] == PROJECTED_CRS && !(1..32767).contains(&e[3])
+                || e[..] == [MODEL_TYPE, 0, 1, 1]
+        };
+        let has_code = |e: &[u16; 4]| e[0] == PROJECTED_CRS && (1..32767).contains(&e[3]);
+        let is_own = self.entries.iter().any(is_projected) && !self.entries.iter().any(has_code);
         self.epsg().filter(|_| !is_own)
     }
 
@@ -194,6 +201,29 @@ mod tests {
         // The centre of the first pixel, whichever way the file states positions.
         assert_eq!(area.world_file(), "10\n0\n0\n-20\n505\n890\n");
         assert_eq!(point.world_file(), "0.5\n0\n0\n-0.25\n7\n46\n");
+    }
+
+    /// The geographic system below a projection without a code is not that of the positions.
+    #[test]
+    fn only_the_systems_own_code_is_stated() {
+        let of = |more: &[[u16; 4]]| {
+            let keys = GeoKeys { entries: more.to_vec(), ..GeoKeys::default() };
+            Georeference { corner: [0.0; 2], cell: [1.0; 2], keys }.pam()
+        };
+        let (projected, geographic) = ([MODEL_TYPE, 0, 1, 1], [GEODETIC_CRS, 0, 1, 4326]);
+        let code = |value: u16| [PROJECTED_CRS, 0, 1, value];
+        for own in [
+            &[projected, geographic][..],
+            &[projected, code(54009), geographic],
+            &[code(32767), geographic],
+            &[[3075, 0, 1, 1], geographic],
+        ] {
+            assert_eq!(of(own), None, "{own:?}");
+        }
+        let stated =
+            |code: u16| Some(format!("<PAMDataset>\n  <SRS>EPSG:{code}</SRS>\n</PAMDataset>\n"));
+        assert_eq!(of(&[projected, code(32633), geographic]), stated(32633));
+        assert_eq!(of(&[[MODEL_TYPE, 0, 1, 2], geographic]), stated(4326));
     }
 
     #[test]

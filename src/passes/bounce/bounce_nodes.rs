@@ -44,8 +44,8 @@ pub(crate) struct BounceNodes {
 
 impl BounceNodes {
     /// None where all bounces are found at every grid point, or without bounces. `sky_share` is that of other lights;
-    /// walks find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and `limits`
-    /// have room for it. Without a cache, walks from every grid point find all bounces.
+    /// walks find their own along their own azimuths. Walks keep a visibility cache if later bounces need one and it fits
+    /// `limits`; without limits there is none. Without a cache, walks from every grid point find all bounces.
     pub(crate) fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -104,7 +104,7 @@ impl BounceNodes {
     }
 }
 
-/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget; none without `limits`.
+/// The visibility cache of some nodes, if it takes at most a quarter of the remaining budget.
 fn cache(
     builder: &mut Builder,
     (size, nodes): ([u32; 2], Nodes),
@@ -115,18 +115,20 @@ fn cache(
     let layers = quality.bounces.azimuths;
     let [across, along] = nodes.size(size);
     let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 16;
-    let taken = format!(
-        "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers",
-        bytes_text(bytes)
-    );
+    let why = "no visibility cache, so each bounce repeats the sweep and the walks";
+    let needs = format!("{} in {layers} layers", bytes_text(bytes));
     let Some(limits) = limits else {
-        notes.push(format!("{taken}, beyond the memory budget"));
+        notes.push(format!("{why}: with one of {needs} the picture exceeds the memory budget"));
         return None;
     };
     let left = limits.memory_budget.saturating_sub(builder.bytes());
     let room = (left / 4).min(limits.allocation_bytes);
     if bytes > room || layers > limits.image_layers {
-        notes.push(format!("{taken}, of {} in {}", bytes_text(room), limits.image_layers));
+        notes.push(format!(
+            "{why}: it needs {needs}, and {} in {} are available",
+            bytes_text(room),
+            limits.image_layers
+        ));
         return None;
     }
     notes.push(format!(

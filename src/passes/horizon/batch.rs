@@ -51,7 +51,7 @@ const LAYER_SHIFT: u32 = 5;
 /// The widest layers: 1024 lines, 256 texels.
 const MOST_LAYER_SHIFT: u32 = 10;
 /// A plan takes at most 1/LATTICE_DIVISOR of the memory budget where more is optional: for a batch with wider layers, beyond its
-/// first azimuth; and for separate lattices, with everything allocated before them.
+/// first azimuth; and for separate lattices, with everything allocated before them and the images of bounces.
 pub(crate) const LATTICE_DIVISOR: u64 = 8;
 
 /// Memory for lattices, by axis: marching columns, rows.

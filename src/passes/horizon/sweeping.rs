@@ -191,7 +191,7 @@ pub(crate) struct Held<'a> {
     pub nodes: Nodes,
     /// The lists of lights by shadow heights.
     pub shadows: Vec<usize>,
-    /// Bytes of images that are made after those of the sweep, for which lattices leave room.
+    /// Bytes that lattices leave free for images made after those of the sweep.
     pub later_bytes: u64,
 }
 

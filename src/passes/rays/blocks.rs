@@ -14,12 +14,12 @@ pub(crate) struct BlockLevels {
     border: Border,
 }
 
-/// The ground, and what rays over it read.
+/// The ground, and the images that passes with rays read.
 pub(crate) struct Blocks {
     pub levels: BlockLevels,
     /// Height and slopes of each grid point.
     pub ground: ResourceId,
-    /// Where rays are traced: the cells, and the maximum height of blocks of cells, to skip by, all levels in one image.
+    /// Cells and maxima. Rays skip blocks by their maximum height; all levels are in one image. None if no pass traces rays.
     of_rays: Option<[ResourceId; 2]>,
 }
 
@@ -82,7 +82,7 @@ impl BlockLevels {
 }
 
 impl Blocks {
-    /// `has_rays`: whether anything reads more than the ground.
+    /// `has_rays`: whether any pass traces rays.
     pub(crate) fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -101,7 +101,7 @@ impl Blocks {
         Self { levels, ground, of_rays }
     }
 
-    /// What passes that trace rays bind besides the ground: cells and maxima.
+    /// Cells and maxima, for passes that trace rays.
     pub(crate) fn of_rays(&self) -> [ResourceId; 2] {
         self.of_rays.expect("made for rays")
     }

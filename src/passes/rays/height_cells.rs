@@ -25,8 +25,8 @@ pub(crate) fn plan(
         },
         "",
         match cells {
-            Some(_) => "so that one fetch reads a cell; light needs the normals of texels",
-            None => "light needs the normals of texels",
+            Some(_) => "so that one fetch reads a cell; shading reads the normals of texels",
+            None => "shading reads the normals of texels",
         },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &shaders::HeightCellsPush {

@@ -1,5 +1,5 @@
-//! What rays over the surface read: cells, and the maximum height of blocks of cells. Bounces by brute force, sphere lights,
-//! facet masks and the path tracer use it. And the ground, which other bounces read, too.
+//! Images of the surface: the ground, and what rays read, which are cells and the maximum height of blocks of cells. Bounces by
+//! brute force, sphere lights, facet masks and the path tracer trace rays. Other bounces read the ground alone.
 
 pub(crate) mod blocks;
 /// For sphere lights and `reference`: the highest of each 4 × 4, 16 × 16, … cells.

@@ -284,7 +284,7 @@ impl Drawing<'_> {
         let Some(bouncing) = self.bouncing.take() else { return };
         let batches = lists.batches.last().map(Vec::as_slice);
         let Images { heights, radiance, sphere_sum, .. } = self.images;
-        // Sphere lights have filled the blocks before.
+        // With sphere lights, their passes are in the plan.
         if let Some(blocks) = self.blocks.as_ref().filter(|_| sphere_sum.is_none()) {
             blocks.plan(&mut self.builder, &self.scene.field, heights, None);
         }

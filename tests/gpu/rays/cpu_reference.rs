@@ -26,7 +26,9 @@ pub(crate) fn height_cells(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         pairs.push(Pair { got: got.into(), want, tolerance, at: [0, i / cols, i % cols] });
     };
     // Without rays there are no cells.
-    let got = run.floats(pass, "cells").unwrap_or_default();
+    let got = run.floats(pass, "cells");
+    assert_eq!(got.is_some(), pass.constant("writes_cells") == Some(1), "{}", pass.label());
+    let got = got.unwrap_or_default();
     for (i, corners) in got.chunks_exact(4).enumerate() {
         (0..4).for_each(|k| add(i, corners[k], cells[i][k].into(), 0.0));
     }

@@ -10,8 +10,8 @@ use ridgelight_io::Georeference;
 use crate::args::Input;
 use crate::setup;
 
-/// Writes what states where the pixels of a PNG lie: its world file and, where the coordinate reference system has a code, the
-/// file from which GDAL and QGIS read that.
+/// Writes the world file of a PNG and, if the coordinate reference system has an EPSG code, the `.aux.xml` from which GDAL and QGIS
+/// read the code.
 pub fn write(picture: &Path, input: &Input, georeference: Option<&Georeference>) -> Result<()> {
     let input = input.first().display();
     let [world, system] = files_of(picture);
@@ -23,7 +23,7 @@ pub fn write(picture: &Path, input: &Input, georeference: Option<&Georeference>)
     match at.pam() {
         Some(text) => files::write_text(&system, &text),
         None => {
-            let why = format!("{input} states no coordinate reference system with an EPSG code");
+            let why = format!("{input} has no coordinate reference system with an EPSG code");
             warn_of(&system, &why);
             Ok(())
         }
@@ -37,7 +37,7 @@ fn files_of(picture: &Path) -> [PathBuf; 2] {
     [picture.with_extension("pgw"), name.into()]
 }
 
-/// A warning where files of an earlier picture stand beside one that has none.
+/// Warns if files of an earlier picture lie beside one that gets none.
 pub fn warn_of_stale(picture: &Path, why: &str) {
     files_of(picture).iter().for_each(|path| warn_of(path, why));
 }

@@ -82,8 +82,9 @@ impl Sidecar {
         };
         let is_lost = |at: &Georeference| crs.is_none() && at.keys.crs().is_none();
         if let Some(name) = srs.filter(|_| at.as_ref().is_none_or(is_lost)) {
+            let position = if at.is_none() { ", and neither is its position" } else { "" };
             warnings.push(format!(
-                "the coordinate reference system in {name} is not read, and neither is its position: cells are in metres unless the \
+                "the coordinate reference system in {name} is not read{position}: cells are in metres unless the \
                  file's own coordinates fit degrees; use `gdalwarp -t_srs` with an EPSG code to write a GeoTIFF with both"
             ));
         }

@@ -9,11 +9,11 @@ mod bounced;
 mod candidates;
 mod chooser;
 mod fitted;
-mod misfit;
 mod model;
 mod oracle_light;
 mod picks;
 mod probes;
+mod residuals;
 mod search;
 mod statistics;
 #[cfg(test)]

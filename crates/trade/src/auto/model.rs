@@ -3,7 +3,7 @@
 
 use super::bounced::{self, BouncedLight};
 use super::fitted::{FITTED, GEOMETRY};
-use super::misfit::Misfit;
+use super::residuals::{Residual, Residuals};
 use super::statistics::Statistics;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 
@@ -119,9 +119,9 @@ pub struct Model {
     logs: [Option<f64>; ALL],
     covariance: [[f64; ALL]; ALL],
     bounced: Option<BouncedLight>,
-    /// ln of the measured errors, in the order of learning.
-    measured: Vec<(Quality, f64)>,
-    misfit: Misfit,
+    /// Measured settings, and ln of their errors with its variance, in the order of calls of [`learn`](Self::learn).
+    measured: Vec<(Quality, f64, f64)>,
+    residuals: Residuals,
 }
 
 impl Model {
@@ -136,7 +136,7 @@ impl Model {
             covariance: [[0.0; ALL]; ALL],
             bounced,
             measured: Vec::new(),
-            misfit: Misfit::default(),
+            residuals: Residuals::default(),
         };
         for (i, (log, spread)) in bounced.iter().flat_map(BouncedLight::guess).enumerate() {
             model.logs[PARTS.len() + i] = Some(log);
@@ -184,9 +184,8 @@ impl Model {
     /// Expected error of settings.
     pub fn expected(&self, quality: &Quality) -> Expected {
         let (shares, sum) = self.shares(quality);
-        let (residual, left) = self.misfit.at(quality);
-        let variance = self.variance(&shares).0.max(0.0) * left;
-        Expected { error: sum.sqrt() * residual.exp(), factor: variance.sqrt().exp() }
+        let error = sum.sqrt() * self.residuals.at(quality).exp();
+        Expected { error, factor: self.variance(&shares).0.max(0.0).sqrt().exp() }
     }
 
     /// Adds a measured relative RMSE; `spread` is the standard deviation of its ln.
@@ -219,15 +218,17 @@ impl Model {
                 self.covariance[i][j] -= with[i] * with[j] / (variance + noise);
             }
         }
-        self.measured.push((*quality, measured));
+        self.measured.push((*quality, measured, spread.powi(2)));
     }
 
-    /// Shares what the parts do not explain of the learnt errors with similar settings.
+    /// Fits the residuals of the measured errors, so that [`expected`](Self::expected) corrects similar settings.
     pub fn share_residuals(&mut self) {
-        let residual = |quality: &Quality, ln: f64| ln - 0.5 * self.shares(quality).1.ln();
-        let residuals: Vec<_> =
-            self.measured.iter().map(|(q, ln)| (*q, residual(q, *ln))).collect();
-        self.misfit = Misfit::of(&residuals);
+        let of = |(quality, ln, noise): &(Quality, f64, f64)| Residual {
+            quality: *quality,
+            ln: ln - 0.5 * self.shares(quality).1.ln(),
+            noise: *noise,
+        };
+        self.residuals = Residuals::of(&self.measured.iter().map(of).collect::<Vec<_>>());
     }
 
     fn log(&self, part: usize) -> f64 {

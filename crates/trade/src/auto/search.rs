@@ -361,9 +361,19 @@ fn choose_by(
     let (mut pilots, mut refused) = (Vec::new(), None);
     for mut quality in [defaults(scene), coarse()] {
         quality.bounces.count = count;
+        // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
+        let plain = start();
         if count == 0 {
-            // As candidates have them, so that none is drawn twice.
-            (quality.bounces, quality.subsample) = (start().bounces, start().subsample);
+            (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
+        }
+        for (part, setting, value) in [
+            (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
+            (Part::Table, &mut quality.table_elevations, plain.table_elevations),
+            (Part::Strips, &mut quality.sun_azimuths, plain.sun_azimuths),
+        ] {
+            if !part.is_in(scene) {
+                *setting = value;
+            }
         }
         match draw(&quality) {
             Err(limit @ Error::Limit { .. }) => {

@@ -8,8 +8,8 @@
 //! field and every light is in both halves, and no pair is. For each error it prints the choice, its
 //! true error, and its time over that of the fastest settings that truly meet the goal. These are
 //! the best of a `trade` walk of S (20) seconds and of all choices.
-//! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4. `--only TEXT` takes only pairs
-//! whose name contains it.
+//! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4. `--only TEXT` measures only the
+//! pairs whose names contain TEXT.
 
 mod fit;
 mod report;
@@ -171,6 +171,9 @@ pub fn run(mut args: Args) -> Outcome {
     let mut gpu = args.open()?;
     let mut scenes = scenes(&folder, side, is_fitted, exponent)?;
     scenes.retain(|(name, _)| only.as_ref().is_none_or(|only| name.contains(only)));
+    if scenes.is_empty() {
+        return Err("--only: no pair has a name with that text".into());
+    }
     let of = (side, &scenes[..]);
     match is_fitted {
         true => Ok(fit::fit(&mut gpu, of)?),

@@ -141,7 +141,7 @@ fn gpu_a_picture_has_a_world_file() {
     done(&folder, "render utm.tif -o o.png --azimuths 8");
     let world = std::fs::read_to_string(folder.path("o.pgw")).unwrap();
     assert_eq!(world, "10\n0\n0\n-20\n500005\n5099990\n");
-    // The reference system of the input, as GDAL reads it; none without the file beside the picture.
+    // GDAL finds the reference system of the input, and none once the `.aux.xml` is removed.
     let system = |name: &str| gdalinfo(&folder.path(name))["stac"]["proj:epsg"].clone();
     assert_eq!((system("utm.tif"), system("o.png")), (json!(32633), json!(32633)));
     let beside = folder.path("o.png.aux.xml");

@@ -51,8 +51,8 @@ fn rio_cogeo_accepts_maps() {
     assert!(error.contains("not tiled"), "{error}");
 }
 
-/// QGIS shows maps, and a picture with its world file, where it shows the input, with the same reference system, named bands and no data
-/// as NaN.
+/// QGIS shows maps, and a picture with the files beside it, at the position of the input and with its reference system. Maps have
+/// named bands, and NaN for no data.
 #[test]
 #[ignore = "needs QGIS for Python: Debian's python3-qgis"]
 fn qgis_shows_maps_where_the_input_is() {
