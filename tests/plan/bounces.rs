@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Limits, Pass, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, Bounces, Environment, Lights, Lines, Method, Quality, Scene,
-    Surface,
+    Albedo, Border, BounceEngine, Bounces, Environment, LightBasis, Lights, Lines, Method, Quality,
+    Scene, SphereLight, Surface,
 };
 
 use crate::{flat, under_sky};
@@ -166,6 +166,40 @@ fn a_larger_budget_never_refuses_a_picture() {
         without += drawn.iter().filter(says).count();
     }
     assert!(without > 0);
+}
+
+/// Passes that fill the ground are in a plan once, if anything reads it; those of the blocks only if rays are traced.
+#[test]
+fn the_ground_is_made_once_and_blocks_for_rays_alone() {
+    let sphere = SphereLight { position_m: [4.0, 4.0, 30.0], radius_m: 1.0, radiance: [1.0; 3] };
+    let lights = [
+        None,
+        Some((LightBasis::Exact, Method::Sweep)),
+        Some((LightBasis::Sh, Method::Sweep)),
+        Some((LightBasis::Sh, Method::Pyramid)),
+    ];
+    for light in lights {
+        for engine in [None].into_iter().chain(ENGINES.map(Some)) {
+            let (light_basis, method) = light.unwrap_or((LightBasis::Exact, Method::Sweep));
+            if engine == Some(BounceEngine::Sweep) && method == Method::Pyramid {
+                continue;
+            }
+            let mut scene = under_sky(flat(13, 18));
+            scene.lights.sphere_lights = light.map(|_| sphere).into_iter().collect();
+            let bounces = engine.map_or(0, |_| 2);
+            let base = quality(engine.unwrap_or(BounceEngine::Auto), bounces, 1);
+            let plan = drawn(&scene, &Quality { light_basis, method, ..base }, ROOMY);
+            let of = format!("{light:?} {engine:?}");
+            let has_ground = light.is_some() || engine.is_some();
+            assert_eq!(count(&plan, "height_cells"), usize::from(has_ground), "{of}");
+            let by_rays =
+                light.is_some() && (light_basis, method) != (LightBasis::Sh, Method::Pyramid);
+            let has_rays = by_rays || engine == Some(BounceEngine::BruteForce);
+            assert_eq!(count(&plan, "height_bounds") > 0, has_rays, "{of}");
+            assert_eq!(plan.find("cells").is_some(), has_rays, "{of}");
+            assert_eq!(missing_barriers(&plan.passes), vec![], "{of}");
+        }
+    }
 }
 
 /// Walks compute the share of ground on their own lines, once; other engines use that of a sky's light, and

@@ -121,6 +121,30 @@ pub fn after(code: &str, prefix: &str) -> Vec<String> {
 mod tests {
     use super::*;
 
+    /// Files that git tracks or would add; not those that it ignores or that are gone.
+    #[test]
+    fn files_are_listed_before_git_knows_them() {
+        let root = std::env::temp_dir().join(format!("ridgelight-listed-{}", std::process::id()));
+        fs::create_dir_all(root.join("a")).unwrap();
+        let git = |args: &[&str]| {
+            assert!(Command::new("git").current_dir(&root).args(args).status().unwrap().success());
+        };
+        git(&["init", "--quiet"]);
+        for (name, text) in
+            [("a/kept", ""), ("a/gone", ""), (".gitignore", "ignored\n"), ("ignored", "")]
+        {
+            fs::write(root.join(name), text).unwrap();
+        }
+        git(&["add", "a"]);
+        fs::remove_file(root.join("a/gone")).unwrap();
+        fs::write(root.join("a/new"), "").unwrap();
+        let all = listed(&root, &["."]);
+        fs::remove_dir_all(&root).unwrap();
+        let mut all: Vec<String> = all.unwrap().lines().map(str::to_owned).collect();
+        all.sort();
+        assert_eq!(all, [".gitignore", "a/kept", "a/new"]);
+    }
+
     #[test]
     fn names_are_read_from_paths_and_braces() {
         let text = "use crate::plan::{Plan, View};\nuse crate::{Error, passes::{sweep, x}, scene};\nlet a = crate::gpu::f();";

@@ -73,11 +73,13 @@ impl GeoKeys {
 
     /// The EPSG code of the horizontal reference system, if the keys hold one.
     pub fn epsg(&self) -> Option<u16> {
-        [PROJECTED_CRS, GEODETIC_CRS].into_iter().find_map(|key| {
-            let entry = self.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
-            // 32767 is a system that other keys define; above are private codes.
-            Some(entry[3]).filter(|code| (1..32767).contains(code))
-        })
+        self.code(PROJECTED_CRS).or_else(|| self.code(GEODETIC_CRS))
+    }
+
+    /// The EPSG code in a key: 32767 is a system that other keys define; above are private codes.
+    fn code(&self, key: u16) -> Option<u16> {
+        let entry = self.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
+        Some(entry[3]).filter(|code| (1..32767).contains(code))
     }
 
     /// The code or the name of the horizontal reference system.
@@ -89,17 +91,13 @@ impl GeoKeys {
         self.defined_by_code().map(|code| format!("EPSG:{code}")).or_else(named)
     }
 
-    /// [`epsg`](Self::epsg), but not of the geographic system that a projection of one's own uses.
+    /// [`epsg`](Self::epsg), but not of the geographic system below a projection without a code.
     fn defined_by_code(&self) -> Option<u16> {
-        // A projection by a private code, or by its parameters; or projected coordinates without a code.
-        let is_projected = |e: &[u16; 4]| {
-            (PROJECTED_CRS..4096).contains(&e[0]) && e[0] != PROJECTED_CRS
-                || e[0] == PROJECTED_CRS && !(1..32767).contains(&e[3])
-                || e[..] == [MODEL_TYPE, 0, 1, 1]
-        };
-        let has_code = |e: &[u16; 4]| e[0] == PROJECTED_CRS && (1..32767).contains(&e[3]);
-        let is_own = self.entries.iter().any(is_projected) && !self.entries.iter().any(has_code);
-        self.epsg().filter(|_| !is_own)
+        // Keys from PROJECTED_CRS to 4095 describe projections.
+        let of_projection =
+            |e: &[u16; 4]| *e == [MODEL_TYPE, 0, 1, 1] || (PROJECTED_CRS..4096).contains(&e[0]);
+        let is_projected = self.entries.iter().any(of_projection);
+        self.code(PROJECTED_CRS).or_else(|| self.code(GEODETIC_CRS).filter(|_| !is_projected))
     }
 
     /// Whether the system is Web Mercator: its codes (EPSG:3857, and 3785 before), or a system of one's own with its name or its

@@ -356,5 +356,12 @@ mod tests {
         std::fs::write(folder.path().join("dem.png.aux.xml"), "<PAM><Scale>0.1</Scale></PAM>")
             .unwrap();
         assert!(has("dem.png.aux.xml are not read"));
+        // A system alone is not read, and neither is a position, unless a world file has one.
+        std::fs::remove_file(path.with_extension("prj")).unwrap();
+        std::fs::write(folder.path().join("dem.png.aux.xml"), "<PAM><SRS>EPSG:32632</SRS></PAM>")
+            .unwrap();
+        assert!(has("dem.png.aux.xml is not read, and neither is its position:"));
+        std::fs::write(path.with_extension("pgw"), "30 0 0 -20 0 0").unwrap();
+        assert!(has("dem.png.aux.xml is not read:"));
     }
 }

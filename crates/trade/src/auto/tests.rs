@@ -4,7 +4,7 @@ mod bounces;
 
 use super::*;
 use crate::trade::start;
-use ridgelight::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{Fuse, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::light;
 use ridgelight_cpu::lit::Lit;
@@ -77,6 +77,20 @@ fn the_fastest_that_reaches_the_goal_is_chosen() {
             assert!(coarse.error > most, "{coarse:?} by half of {quality:?}");
         }
     }
+}
+
+/// The first two frames have the settings of candidates: under a sky alone, elevations of tables, slices and bounces are the defaults.
+#[test]
+fn the_first_frames_are_candidates() {
+    let scene = scene();
+    let mut drawn = Vec::new();
+    choose(&Lit::of(&scene), Goal::MaxError(0.02), WHOLE, None, |quality, _| {
+        drawn.push(*quality);
+        draw(&scene, quality)
+    })
+    .unwrap();
+    let (lines, fuse) = (Lines::FourCells, Fuse::AimedNearest);
+    assert_eq!(drawn[..2], [start(), Quality { azimuths: 8, lines, fuse, ..start() }]);
 }
 
 #[test]

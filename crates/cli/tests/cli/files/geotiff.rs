@@ -165,6 +165,15 @@ fn gpu_a_picture_has_a_world_file() {
     assert!(run.err.contains(note), "{}", run.err);
     done(&folder, "render a.npy -o p.png --azimuths 8");
     assert!(!folder.path("p.pgw").exists() && !folder.path("p.png.aux.xml").exists());
+    // A position without a system: no file states one, and one of an earlier picture has a warning.
+    let grid = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n4 5 6\n";
+    folder.write("grid.asc", grid.as_bytes());
+    done(&folder, "render grid.asc -o g.png --azimuths 8");
+    assert!(folder.path("g.pgw").exists() && !folder.path("g.png.aux.xml").exists());
+    folder.write("g.png.aux.xml", b"<PAMDataset/>");
+    let run = folder.run_str("render grid.asc -o g.png --azimuths 8");
+    let warning = "warning: g.png.aux.xml belongs to another picture, because grid.asc has no coordinate reference system";
+    assert!(run.status == Some(0) && run.err.contains(warning), "{}", run.err);
 }
 
 pub fn gdalinfo(path: &Path) -> Value {
