@@ -73,7 +73,7 @@ fn kernel(a: &[f64; SETTINGS], b: &[f64; SETTINGS]) -> f64 {
 fn point_of(quality: &Quality) -> [f64; SETTINGS] {
     let steps = |value: u32| f64::from(value).log2();
     let bounces = &quality.bounces;
-    // Exact horizons, and sweeps that read lines on both sides, err in other points than the rest.
+    // Exact horizons, and sweeps that read lines on both sides, err at other texels than other sweeps.
     let exact = if is_exact(quality) { 3.0 } else { 0.0 };
     let fuse = [0.0, 1.0, 4.0][fuse_row(quality.fuse)];
     [
