@@ -255,7 +255,7 @@ mod tests {
         });
     }
 
-    /// With their weights all texels of probes are requested, without them the uniform half. Where all texels of the field are
+    /// With their weights all texels of probes are requested, without them the uniform third. Where all texels of the field are
     /// wanted, both request all.
     #[test]
     fn probes_take_the_texels_that_were_requested() {

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use ridgelight::basis::random::{STEP, mixed, unit};
 
-/// `wanted` of the weights' indices, and 1 / (count · probability) of each. The first half, which [`even_picks`] returns
-/// too, is uniform; the rest is by weight. Each half is stratified into equal parts in reading order. All once where all
+/// `wanted` of the weights' indices, and 1 / (count · probability) of each. The first third, which [`even_picks`] returns
+/// too, is uniform; the rest is by weight. Both are stratified into equal parts in reading order. All once where all
 /// are wanted; all uniform where all weights are 0 or one is not finite.
 ///
-/// The probability is that of both halves together (the balance heuristic, Veach & Guibas 1995), so a mean over all
+/// The probability is that of both parts together (the balance heuristic, Veach & Guibas 1995), so a mean over all
 /// picks, each times its factor, is unbiased. Its variance over all picks includes the difference between the means of
-/// the halves: the bound is wider, not narrower.
+/// the parts: the bound is wider, not narrower.
 pub(super) fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     let count = weights.len();
     if wanted >= count {
@@ -41,7 +41,7 @@ pub(super) fn even_picks(count: usize, wanted: usize, seed: u64) -> Vec<usize> {
     if wanted >= count {
         (0..count).collect()
     } else {
-        parts(count, 0..wanted.div_ceil(2), seed, |_| 1.0)
+        parts(count, 0..wanted.div_ceil(3), seed, |_| 1.0)
     }
 }
 

@@ -1,5 +1,5 @@
 use super::oracle_light::{OracleLight, Rays};
-use super::picks::{even_picks, picks};
+use super::picks::{even_picks, picks, usable_sum};
 use ridgelight::plan::max_path_light;
 use ridgelight::scene::{Border, Scene};
 use ridgelight::{Error, Result};
@@ -107,7 +107,7 @@ impl Probes {
     /// `wanted` texels without void, or all. The same `seed`, count and probabilities give the same
     /// texels. Runs on all cores.
     ///
-    /// `unsure`, where errors are expected ([`unsure`]), directs half of the probes
+    /// `unsure`, where errors are expected ([`unsure`]), directs two thirds of the probes
     /// to where errors are: few texels at shadow edges have nearly all of the error. Empty:
     /// uniform.
     ///
@@ -347,30 +347,48 @@ fn quantile(z: f64, skew: f64, count: f64) -> f64 {
     z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
 }
 
-/// Where errors are expected, from two pictures of a scene, the finer first: the largest difference within 2 texels; and beside specular in proportion to the light, as
-/// suns' highlights and tables of the lobe have errors that two pictures share.
-pub fn unsure(scene: &Scene, [fine, coarse]: [&[Vec<f32>]; 2]) -> Vec<f64> {
-    let mut unsure = apart(fine, coarse, scene.field.cols());
+/// Where errors are expected, from pictures of a scene. Of two, the largest difference within 2 texels; beside specular also in
+/// proportion to the light, as suns' highlights and tables of the lobe have errors that two pictures share. Of the first and a
+/// `fine` one, where there is one: the difference at each texel itself, scaled to the same sum. Under a small bright light ten of
+/// 16,384 texels can hold nearly all of the error of fine settings: a coarse picture differs nearly everywhere, a finer one there.
+pub fn unsure(
+    scene: &Scene,
+    [middle, coarse]: [&[Vec<f32>]; 2],
+    fine: Option<&[Vec<f32>]>,
+) -> Vec<f64> {
+    let mut unsure = apart(middle, coarse, scene.field.cols());
     if scene.surface.specular.is_some() {
-        let last = fine.len() - 1;
+        let last = middle.len() - 1;
         for (i, unsure) in unsure.iter_mut().enumerate() {
-            let light = (0..3).map(|c| f64::from(fine[c.min(last)][i])).sum::<f64>();
+            let light = (0..3).map(|c| f64::from(middle[c.min(last)][i])).sum::<f64>();
             // Voids are NaN.
             *unsure += if light.is_finite() { SPECULAR_DOUBT * light.abs() } else { 0.0 };
         }
     }
-    unsure
+    let Some(more) = fine.map(|fine| differences(middle, fine)) else { return unsure };
+    match (usable_sum(&unsure), usable_sum(&more)) {
+        (Some(sum), Some(of_more)) => {
+            unsure.iter().zip(more).map(|(u, m)| u + m * sum / of_more).collect()
+        }
+        (None, Some(_)) if unsure.iter().all(|u| *u == 0.0) => more,
+        _ => unsure,
+    }
+}
+
+/// Difference of two pictures at each texel, over the channels; 0 at voids.
+fn differences(a: &[Vec<f32>], b: &[Vec<f32>]) -> Vec<f64> {
+    let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
+    (0..a[0].len())
+        .map(|i| (0..3).map(|c| f64::from((last(a, c, i) - last(b, c, i)).abs())).sum::<f64>())
+        // Voids are NaN.
+        .map(|d| if d.is_nan() { 0.0 } else { d })
+        .collect()
 }
 
 /// Difference of two pictures at each texel, the largest within 2 texels.
 pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
-    let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
     let count = a[0].len();
-    let differences: Vec<f64> = (0..count)
-        .map(|i| (0..3).map(|c| f64::from((last(a, c, i) - last(b, c, i)).abs())).sum::<f64>())
-        // Voids are NaN.
-        .map(|d| if d.is_nan() { 0.0 } else { d })
-        .collect();
+    let differences = differences(a, b);
     let farthest = |values: &[f64], i: usize, at: usize, length: usize, stride: usize| {
         let (from, to) = (at.saturating_sub(REACH), (at + REACH).min(length - 1));
         (from..=to).map(|j| values[i - at * stride + j * stride]).fold(0.0, f64::max)

@@ -34,17 +34,17 @@ pub struct Chosen {
     pub probes: usize,
     /// Paths from each probe, for bounced light; 0 without.
     pub paths: u32,
-    /// Of the bound. None where only some texels are probes, and these are uniform, so that they may miss shadow edges: the
-    /// first two frames did not both fit the device, are equal, or have values beyond f32.
+    /// Of the bound. None where only some texels are probes, and these are uniform, so that they may miss shadow edges: one
+    /// of the first two frames did not fit the device or has values beyond f32, or the first three are equal.
     pub confidence: Option<f64>,
     /// All trials, in order, including the chosen one.
     pub trials: Vec<Trial>,
 }
 
-/// Settings of the second frame; the first are the defaults. Probes are taken where the pictures of
-/// the two differ most.
-fn coarse() -> Quality {
-    Quality {
+/// Settings of the first frames: the defaults, coarse ones, and finer ones. Probes are taken where their pictures differ
+/// most ([`unsure`]).
+fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
+    let coarse = Quality {
         azimuths: 8,
         sun_azimuths: 2,
         lines: Lines::FourCells,
@@ -53,7 +53,32 @@ fn coarse() -> Quality {
         subsample: 2,
         bounces: Bounces { azimuths: 8, ..Bounces::default() },
         ..start()
-    }
+    };
+    let fine = Quality {
+        azimuths: 48,
+        sun_azimuths: 16,
+        lines: Lines::HalfCell,
+        table_elevations: 512,
+        ..start()
+    };
+    [defaults(scene), coarse, fine].map(|mut quality| {
+        quality.bounces.count = bounces;
+        // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
+        let plain = start();
+        if bounces == 0 {
+            (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
+        }
+        for (part, setting, value) in [
+            (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
+            (Part::Table, &mut quality.table_elevations, plain.table_elevations),
+            (Part::Strips, &mut quality.sun_azimuths, plain.sun_azimuths),
+        ] {
+            if !part.is_in(scene) {
+                *setting = value;
+            }
+        }
+        quality
+    })
 }
 
 /// Bounced light, which the choice must also get right.
@@ -358,37 +383,25 @@ fn choose_by(
     let scene = oracle.scene();
     let count = bounced.as_ref().map_or(0, |b| b.count);
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
-    let (mut pilots, mut refused) = (Vec::new(), None);
-    for mut quality in [defaults(scene), coarse()] {
-        quality.bounces.count = count;
-        // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
-        let plain = start();
-        if count == 0 {
-            (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
-        }
-        for (part, setting, value) in [
-            (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
-            (Part::Table, &mut quality.table_elevations, plain.table_elevations),
-            (Part::Strips, &mut quality.sun_azimuths, plain.sun_azimuths),
-        ] {
-            if !part.is_in(scene) {
-                *setting = value;
-            }
-        }
-        match draw(&quality) {
+    let (pilots, mut refused) = (pilots(scene, count), None);
+    let mut pictures: [Option<Drawn>; 3] = [const { None }; 3];
+    for (quality, picture) in pilots.iter().zip(&mut pictures) {
+        match draw(quality) {
             Err(limit @ Error::Limit { .. }) => {
-                chooser.refuse(&quality);
+                chooser.refuse(quality);
                 refused = Some(limit);
             }
-            drawn => pilots.push((quality, drawn?)),
+            drawn => *picture = Some(drawn?),
         }
     }
-    let unsure = match (pilots.as_slice(), refused) {
-        ([(_, a), (_, b)], _) => unsure(scene, [&a.planes, &b.planes]),
-        // The coarsest do not fit either: no setting is the cause.
-        ([], Some(limit)) => return Err(limit),
+    let unsure = match pictures.each_ref().map(|p| p.as_ref().map(|p| p.planes.as_slice())) {
+        [Some(middle), Some(coarse), fine] => unsure(scene, [middle, coarse], fine),
         _ => Vec::new(),
     };
+    // The coarsest do not fit either: no setting is the cause.
+    if let Some(limit) = refused.filter(|_| pictures.iter().all(Option::is_none)) {
+        return Err(limit);
+    }
     let is_aimed = usable_sum(&unsure).is_some();
     let mut judge = Judge::new(oracle, (probes, seed), unsure, bounced, goal)?;
     let own = judge.probes.own_error();
@@ -405,8 +418,10 @@ fn choose_by(
             ),
         });
     }
-    for (quality, drawn) in pilots {
-        judge.take(&mut chooser, &quality, drawn)?;
+    for (quality, drawn) in pilots.iter().zip(pictures) {
+        if let Some(drawn) = drawn {
+            judge.take(&mut chooser, quality, drawn)?;
+        }
     }
     let most = CONFIRMING_PROBES * probes;
     let fewest = if count > 0 { most } else { FEWEST_CONFIRMING.min(most) };

@@ -50,7 +50,7 @@ impl<'a> Measuring<'a> {
         };
         let plain = judged(gpu, scene, &start())?.planes;
         let control = judged(gpu, scene, &dense)?.planes;
-        let unsure = unsure(scene, [&control, &plain]);
+        let unsure = unsure(scene, [&control, &plain], None);
         let probes = Probes::of(&Lit::of(scene), TRUE_PROBES, TRUE_SEED, &unsure)?;
         let own = probes.error(&control, None, Probes::ONE_BOUND);
         let mut found = Self { scene, probes, control, own, all: Vec::new() };

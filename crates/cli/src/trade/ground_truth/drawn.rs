@@ -68,7 +68,7 @@ impl GroundTruth {
         }
         let mut ground_truth = Self::new(whole, scene.field.cols(), about.join("; "));
         let steps = ground_truth.distance(&halved)?.relative_rmse;
-        let unsure = unsure(scene, [&ground_truth.planes, &halved]);
+        let unsure = unsure(scene, [&ground_truth.planes, &halved], None);
         let probes = probes(&Lit::of(scene), &unsure, rig.share(PROBING))?;
         let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);
         ground_truth.own_error = Some(steps.max(off.at_most));
