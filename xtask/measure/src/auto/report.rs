@@ -259,7 +259,23 @@ pub fn report(
         }
     }
     let (pairs, summary) = (scenes.len(), summary(&rows));
-    println!("\n{pairs} pairs: {summary}");
+    let of = |key: &str| number(&summary, key);
+    println!(
+        "\n{pairs} pairs, {} requests: {} chosen, of which {} hold and {} are within their bound; {} refused, {} of them though \
+         settings that hold were drawn. Time over the best: median {:.2}, 90th percentile {:.2}, worst {:.2}; at most 1.3 in {} \
+         of {}.",
+        of("asked"),
+        of("chosen"),
+        of("held"),
+        of("within_stated_bound"),
+        of("refused"),
+        of("refused_though_found"),
+        of("ratio_median"),
+        of("ratio_90"),
+        of("ratio_worst"),
+        of("within_1.3"),
+        of("ratios"),
+    );
     let Some(path) = json else { return Ok(()) };
     let figures = json!({
         "device": device, "driver": driver, "side": side, "trade_seconds": seconds,

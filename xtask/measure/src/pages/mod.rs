@@ -357,16 +357,24 @@ fn choices(result: &str) -> Result<String> {
     let different: std::collections::BTreeSet<_> =
         figures.rows().iter().filter_map(choice).collect();
     of["different"] = different.len().into();
-    figures.fill(
-        &of,
+    let refused = match figures.number(&of, "refused")? {
+        0.0 => "None of the {asked} requests was refused.",
+        _ => {
+            "{refused} of {asked} requests were refused, {refused_though_found} of them although settings that meet the goal \
+             had been drawn."
+        }
+    };
+    let text = [
         "Errors of 5, 2, 1, 0.5 and 0.2 % were requested for {pairs} pairs of a field (its middle {side}²) and lights. No \
          constant was fitted on these pairs. {held} of {chosen} choices meet the goal ({share%1} %). {different} of them differ from \
-         each other; {within_stated_bound} are within the bound that they state. {refused} of {asked} requests were refused, \
-         {refused_though_found} of them although settings that meet the goal had been drawn. The rival is the cheapest setting \
+         each other; {within_stated_bound} are within the bound that they state. ",
+        refused,
+        " The rival is the cheapest setting \
          that truly meets the goal, of all that a `trade` walk of {trade_seconds} s and the choices drew. Time over that of the \
          rival: median {ratio_median:2}, 90th percentile {ratio_90:2}, worst {ratio_worst:2}; at most 1.3 in {within_1.3} of \
          {ratios}.\n\n",
-    )
+    ];
+    figures.fill(&of, &text.concat())
 }
 
 /// Geometry against its aggregates, of brdf.txt: mean radiance and errors for each field and light.
