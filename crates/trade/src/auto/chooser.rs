@@ -22,7 +22,7 @@ const WORTH: f64 = 0.05;
 /// miss it; and its highest cost over that of the settings expected to reach the goal.
 const CONTROL: f64 = 3.0;
 const COARSEST_CONTROL: f64 = 2.0;
-const CONTROLS: usize = 4;
+const CONTROLS: usize = 5;
 const DEAREST_CONTROL: f64 = 6.0;
 /// If nothing is expected to reach the goal: how much less accurate than the best the next frame
 /// may be, if it is faster.
@@ -263,6 +263,11 @@ impl<'a> Chooser<'a> {
     /// Expected nanoseconds of a frame.
     pub fn cost(&self, quality: &Quality) -> f64 {
         self.costs.expected_ns(self.scene, quality)
+    }
+
+    /// Whether a frame is rendered at all: not if it is expected to take too long, by the time of another.
+    pub fn is_affordable(&self, quality: &Quality, (other, ns): (&Quality, f64)) -> bool {
+        ns * self.cost(quality) / self.cost(other) <= LONGEST_NS
     }
 
     fn error(&self, quality: &Quality) -> f64 {

@@ -347,28 +347,30 @@ fn quantile(z: f64, skew: f64, count: f64) -> f64 {
     z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
 }
 
-/// Where errors are expected, from pictures of a scene. Of two, the largest difference within 2 texels; beside specular also in
-/// proportion to the light, as suns' highlights and tables of the lobe have errors that two pictures share. Of the first and a
-/// `fine` one, where there is one: the difference at each texel itself, scaled to the same sum. Under a small bright light ten of
-/// 16,384 texels can hold nearly all of the error of fine settings: a coarse picture differs nearly everywhere, a finer one there.
+/// Where errors are expected. The weight of a texel is the largest difference between a picture and a coarser one within 2 texels.
+/// Beside specular it grows in proportion to the light, as suns' highlights and tables of the lobe have errors that two
+/// pictures share. With a `fine` picture, its difference from the first at the texel itself is added, scaled to the same sum: under
+/// a small bright light, ten of 16,384 texels can hold nearly all of the error of fine settings, while a coarse picture
+/// differs nearly everywhere.
 pub fn unsure(
     scene: &Scene,
-    [middle, coarse]: [&[Vec<f32>]; 2],
+    [picture, coarse]: [&[Vec<f32>]; 2],
     fine: Option<&[Vec<f32>]>,
 ) -> Vec<f64> {
-    let mut unsure = apart(middle, coarse, scene.field.cols());
+    let mut unsure = apart(picture, coarse, scene.field.cols());
     if scene.surface.specular.is_some() {
-        let last = middle.len() - 1;
+        let last = picture.len() - 1;
         for (i, unsure) in unsure.iter_mut().enumerate() {
-            let light = (0..3).map(|c| f64::from(middle[c.min(last)][i])).sum::<f64>();
+            let light = (0..3).map(|c| f64::from(picture[c.min(last)][i])).sum::<f64>();
             // Voids are NaN.
             *unsure += if light.is_finite() { SPECULAR_DOUBT * light.abs() } else { 0.0 };
         }
     }
-    let Some(more) = fine.map(|fine| differences(middle, fine)) else { return unsure };
+    let Some(more) = fine.map(|fine| differences(picture, fine)) else { return unsure };
     match (usable_sum(&unsure), usable_sum(&more)) {
         (Some(sum), Some(of_more)) => {
-            unsure.iter().zip(more).map(|(u, m)| u + m * sum / of_more).collect()
+            unsure.iter_mut().zip(more).for_each(|(u, m)| *u += m * sum / of_more);
+            unsure
         }
         (None, Some(_)) if unsure.iter().all(|u| *u == 0.0) => more,
         _ => unsure,

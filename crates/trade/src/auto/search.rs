@@ -22,6 +22,12 @@ pub struct Drawn {
     pub passes: Vec<(String, f64)>,
 }
 
+impl Drawn {
+    fn ns(&self) -> f64 {
+        self.passes.iter().map(|p| p.1).sum()
+    }
+}
+
 /// Settings that reach a goal, with measurements.
 #[derive(Clone, Debug)]
 pub struct Chosen {
@@ -41,7 +47,7 @@ pub struct Chosen {
     pub trials: Vec<Trial>,
 }
 
-/// Settings of the first frames: the defaults, coarse ones, and finer ones. Probes are taken where their pictures differ
+/// Settings of the first frames: the defaults, finer ones and coarse ones. Probes are taken where their pictures differ
 /// most ([`unsure`]).
 fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
     let coarse = Quality {
@@ -54,14 +60,11 @@ fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
         bounces: Bounces { azimuths: 8, ..Bounces::default() },
         ..start()
     };
-    let fine = Quality {
-        azimuths: 48,
-        sun_azimuths: 16,
-        lines: Lines::HalfCell,
-        table_elevations: 512,
-        ..start()
-    };
-    [defaults(scene), coarse, fine].map(|mut quality| {
+    let defaults = defaults(scene);
+    // The exact shadows of suns need the default lines.
+    let lines = if defaults.method == Method::Auto { defaults.lines } else { Lines::HalfCell };
+    let fine = Quality { azimuths: 48, sun_azimuths: 16, lines, table_elevations: 512, ..defaults };
+    [defaults, fine, coarse].map(|mut quality| {
         quality.bounces.count = bounces;
         // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
         let plain = start();
@@ -377,7 +380,7 @@ fn choose_by(
     bounced: Option<Bounced<'_>>,
     mut draw: impl FnMut(&Quality, &OracleThreads) -> Result<Drawn>,
 ) -> Result<Chosen> {
-    // Half of the probes do not depend on the pictures.
+    // A third of the probes does not depend on the pictures.
     Probes::request(oracle, first_count(probes, bounced.is_some()), seed, None)?;
     let mut draw = |quality: &Quality| draw(quality, oracle.threads());
     let scene = oracle.scene();
@@ -385,17 +388,23 @@ fn choose_by(
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (pilots, mut refused) = (pilots(scene, count), None);
     let mut pictures: [Option<Drawn>; 3] = [const { None }; 3];
-    for (quality, picture) in pilots.iter().zip(&mut pictures) {
+    for (k, quality) in pilots.iter().enumerate() {
+        let of_defaults = pictures[0].as_ref().map(Drawn::ns);
+        let is_affordable = |ns: f64| chooser.is_affordable(quality, (&pilots[0], ns));
+        // The finer frame only helps: it is left out where the defaults do not fit or it would take too long.
+        if k == 1 && !of_defaults.is_some_and(is_affordable) {
+            continue;
+        }
         match draw(quality) {
             Err(limit @ Error::Limit { .. }) => {
                 chooser.refuse(quality);
                 refused = Some(limit);
             }
-            drawn => *picture = Some(drawn?),
+            drawn => pictures[k] = Some(drawn?),
         }
     }
     let unsure = match pictures.each_ref().map(|p| p.as_ref().map(|p| p.planes.as_slice())) {
-        [Some(middle), Some(coarse), fine] => unsure(scene, [middle, coarse], fine),
+        [Some(defaults), fine, Some(coarse)] => unsure(scene, [defaults, coarse], fine),
         _ => Vec::new(),
     };
     // The coarsest do not fit either: no setting is the cause.
@@ -441,7 +450,7 @@ fn choose_by(
         };
         let Some(best) = best else { break };
         let (quality, measured) = (best.quality, best.measured);
-        let Drawn { planes, passes } = draw(&quality)?;
+        let drawn = draw(&quality)?;
         let (deviations, wanted) = match count {
             0 => {
                 let (deviations, known) = (Probes::FOUR_BOUNDS, judge.probes.count());
@@ -451,9 +460,8 @@ fn choose_by(
             _ => (Probes::EIGHT_BOUNDS, most),
         };
         let fresh = judge.confirming(requested, wanted)?;
-        let ns = passes.iter().map(|p| p.1).sum();
-        let measured = fresh.error(&planes, judge.control(), deviations);
-        let trial = chooser.confirmed(&quality, measured, ns).copied();
+        let measured = fresh.error(&drawn.planes, judge.control(), deviations);
+        let trial = chooser.confirmed(&quality, measured, drawn.ns()).copied();
         if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
             return Ok(Chosen {
                 trial,

@@ -89,18 +89,63 @@ fn the_fastest_that_reaches_the_goal_is_chosen() {
 }
 
 /// The first frames have the settings of candidates: under a sky alone, elevations of tables, slices and bounces are the defaults.
+/// With a sun, whose exact shadows need the default lines, the second frame has these, more azimuths and more slices.
 #[test]
 fn the_first_frames_are_candidates() {
+    let first = |scene: &Scene| -> [Quality; 3] {
+        let mut drawn = Vec::new();
+        let sky = self::scene();
+        choose(&Lit::of(scene), Goal::MaxError(0.02), WHOLE, None, |quality, _| {
+            drawn.push(*quality);
+            draw(&sky, quality)
+        })
+        .ok();
+        let all = candidates::candidates(scene, 0);
+        assert!(drawn[..3].iter().all(|q| all.contains(q)), "{:?}", &drawn[..3]);
+        drawn[..3].try_into().unwrap()
+    };
+    let (lines, fuse) = (Lines::FourCells, Fuse::AimedNearest);
+    let mut scene = scene();
+    let coarse = Quality { azimuths: 8, lines, fuse, ..start() };
+    let fine = Quality { azimuths: 48, lines: Lines::HalfCell, ..start() };
+    assert_eq!(first(&scene), [start(), fine, coarse]);
+    scene.lights.suns = vec![Sun {
+        azimuth_rad: 1.0,
+        elevation_rad: 0.5,
+        diameter_rad: 0.01,
+        irradiance: [1.0; 3],
+    }];
+    let exact = Quality { method: Method::Auto, ..start() };
+    let fine = Quality { azimuths: 48, sun_azimuths: 16, ..exact };
+    assert_eq!(first(&scene), [exact, fine, Quality { sun_azimuths: 2, ..coarse }]);
+}
+
+/// Where the defaults do not fit, the finer frame is not drawn; where the coarse settings do not fit either, their refusal is
+/// reported. A finer frame that would take more than half a minute is not drawn.
+#[test]
+fn the_finer_frame_is_left_out_where_it_cannot_help() {
     let scene = scene();
     let mut drawn = Vec::new();
-    choose(&Lit::of(&scene), Goal::MaxError(0.02), WHOLE, None, |quality, _| {
-        drawn.push(*quality);
-        draw(&scene, quality)
+    let limit = |azimuths: u32| Error::Limit {
+        what: format!("{azimuths} azimuths"),
+        needs: "".into(),
+        limit: "".into(),
+    };
+    let refused = choose(&Lit::of(&scene), Goal::MaxError(0.1), WHOLE, None, |quality, _| {
+        drawn.push(quality.azimuths);
+        Err(limit(quality.azimuths))
+    });
+    assert_eq!(drawn, [32, 8]);
+    assert!(refused.unwrap_err().to_string().contains("8 azimuths"));
+    drawn.clear();
+    choose(&Lit::of(&scene), Goal::MaxError(0.1), WHOLE, None, |quality, _| {
+        drawn.push(quality.azimuths);
+        let mut picture = draw(&scene, quality)?;
+        picture.passes[0].1 = 25e9;
+        Ok(picture)
     })
     .unwrap();
-    let (lines, fuse) = (Lines::FourCells, Fuse::AimedNearest);
-    let fine = Quality { azimuths: 48, lines: Lines::HalfCell, ..start() };
-    assert_eq!(drawn[..3], [start(), Quality { azimuths: 8, lines, fuse, ..start() }, fine]);
+    assert_eq!(drawn[..2], [32, 8]);
 }
 
 #[test]
@@ -134,7 +179,9 @@ fn unreachable_goals_are_refused() {
 fn a_time_budget_is_kept() {
     let found = chosen(Goal::MaxCost(20e6)).unwrap();
     assert!(found.trial.ns <= 20e6);
-    assert!(matches!(found.trial.quality.azimuths, 12 | 16), "{found:?}");
+    let Quality { azimuths, lines, .. } = found.trial.quality;
+    let is_either = matches!((azimuths, lines), (12, Lines::TwoCells) | (16, Lines::FourCells));
+    assert!(is_either, "{found:?}");
     let scene = scene();
     let small = choose(&Lit::of(&scene), Goal::MaxCost(20e6), WHOLE, None, |quality, _| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
@@ -180,8 +227,8 @@ fn costs_have_an_overhead() {
     assert!((last / ns(128) - 1.0).abs() < 0.01, "{last}");
 }
 
-/// A device that takes a second per azimuth ends the search early, which is reported. Without a finite difference of the first
-/// frames, probes of a part of the texels leave no confidence.
+/// A device that takes a second per azimuth ends the search early, which is reported. Without the defaults and
+/// coarse settings, or a finite difference of the first frames, probes of a part of the texels leave no confidence.
 #[test]
 fn search_limits_and_bounds_are_reported() {
     let scene = scene();
@@ -192,15 +239,15 @@ fn search_limits_and_bounds_are_reported() {
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     let sure = Some(Probes::CONFIDENCE);
-    for (second, third, probes, confidence) in [
+    for (fine, coarse, probes, confidence) in [
         ("as drawn", "as drawn", 40, sure),
-        ("refused", "as drawn", 40, None),
-        ("as drawn", "refused", 40, sure),
-        ("equal", "as drawn", 40, sure),
+        ("as drawn", "refused", 40, None),
+        ("refused", "as drawn", 40, sure),
+        ("as drawn", "equal", 40, sure),
         ("equal", "equal", 40, None),
-        ("infinite", "as drawn", 40, None),
-        ("as drawn", "infinite", 40, sure),
-        ("refused", "as drawn", SIDE * SIDE, sure),
+        ("as drawn", "infinite", 40, None),
+        ("infinite", "as drawn", 40, sure),
+        ("as drawn", "refused", SIDE * SIDE, sure),
         ("equal", "equal", SIDE * SIDE, sure),
     ] {
         let mut frames: Vec<Vec<Vec<f32>>> = Vec::new();
@@ -208,8 +255,8 @@ fn search_limits_and_bounds_are_reported() {
             choose(&Lit::of(&scene), Goal::MaxError(0.1), (probes, 7), None, |quality, _| {
                 let mut drawn = draw(&scene, quality)?;
                 let kind = match frames.len() {
-                    1 => second,
-                    2 => third,
+                    1 => fine,
+                    2 => coarse,
                     _ => "as drawn",
                 };
                 match kind {
@@ -220,7 +267,7 @@ fn search_limits_and_bounds_are_reported() {
                 frames.push(drawn.planes.clone());
                 if kind == "refused" { Err(full()) } else { Ok(drawn) }
             });
-        assert_eq!(found.unwrap().confidence, confidence, "{second}, {third}, {probes} probes");
+        assert_eq!(found.unwrap().confidence, confidence, "{fine}, {coarse}, {probes} probes");
     }
 }
 

@@ -232,7 +232,7 @@ pub fn report(
 ) -> Result<()> {
     let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
     println!(
-        "{device}; middle {side}² of each field; pairs that nothing was fitted on; {seconds} s of trade a pair; true \
+        "{device}; middle {side}² of each field; pairs that the model of errors was not fitted on; {seconds} s of trade a pair; true \
          errors at {TRUE_PROBES} grid points of the oracle other than those that choose ({MORE_PROBES} \
          where the error of the frame beside them is above {} %)\n",
         100.0 * GOOD

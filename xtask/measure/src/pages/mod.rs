@@ -365,8 +365,8 @@ fn choices(result: &str) -> Result<String> {
         }
     };
     let text = [
-        "Errors of 5, 2, 1, 0.5 and 0.2 % were requested for {pairs} pairs of a field (its middle {side}²) and lights. No \
-         constant was fitted on these pairs. {held} of {chosen} choices meet the goal ({share%1} %). {different} of them differ from \
+        "Errors of 5, 2, 1, 0.5 and 0.2 % were requested for {pairs} pairs of a field (its middle {side}²) and lights. The \
+         model of errors was not fitted on these pairs. {held} of {chosen} choices meet the goal ({share%1} %). {different} of them differ from \
          each other; {within_stated_bound} are within the bound that they state. ",
         refused,
         " The rival is the cheapest setting \

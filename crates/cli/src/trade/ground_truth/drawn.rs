@@ -74,7 +74,7 @@ impl GroundTruth {
         ground_truth.own_error = Some(steps.max(off.at_most));
         ground_truth.quality_of = format!(
             "with half its counts it changes by {} (RMSE), which bounds its own error where \
-                doubling the counts at least halves it; at {} probes, half of them where the two \
+                doubling the counts at least halves it; at {} probes, two thirds of them where the two \
                 differ most, its error against the f64 oracle is {}, {}; the larger of the two is used",
             percent(steps),
             probes.count(),
@@ -90,7 +90,7 @@ impl GroundTruth {
     }
 }
 
-/// Exact light at as many grid points as fit into a time, at least the fewest; half of them are
+/// Exact light at as many grid points as fit into a time, at least the fewest; two thirds of them are
 /// drawn in proportion to the difference of two frames.
 fn probes(lit: &Lit<'_>, unsure: &[f64], most_s: f64) -> Result<Probes> {
     let begun = Instant::now();
