@@ -66,9 +66,46 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
 }
 
 /// The defaults: suns have exact shadows.
-pub(super) fn defaults(scene: &Scene) -> Quality {
+fn defaults(scene: &Scene) -> Quality {
     let has_suns = !scene.lights.suns.is_empty();
     Quality { method: if has_suns { Method::Auto } else { Method::Sweep }, ..start() }
+}
+
+/// Settings of the first frames: the defaults, finer ones and coarse ones. Probes are taken where their pictures differ
+/// most ([`unsure`](super::unsure)).
+pub(super) fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
+    let coarse = Quality {
+        azimuths: 8,
+        sun_azimuths: 2,
+        lines: Lines::FourCells,
+        fuse: Fuse::AimedNearest,
+        table_elevations: 64,
+        subsample: 2,
+        bounces: Bounces { azimuths: 8, ..Bounces::default() },
+        ..start()
+    };
+    let defaults = defaults(scene);
+    // The exact shadows of suns need the default lines.
+    let lines = if defaults.method == Method::Auto { defaults.lines } else { Lines::HalfCell };
+    let fine = Quality { azimuths: 48, sun_azimuths: 16, lines, table_elevations: 512, ..defaults };
+    [defaults, fine, coarse].map(|mut quality| {
+        quality.bounces.count = bounces;
+        // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
+        let plain = start();
+        if bounces == 0 {
+            (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
+        }
+        for (part, setting, value) in [
+            (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
+            (Part::Table, &mut quality.table_elevations, plain.table_elevations),
+            (Part::Strips, &mut quality.sun_azimuths, plain.sun_azimuths),
+        ] {
+            if !part.is_in(scene) {
+                *setting = value;
+            }
+        }
+        quality
+    })
 }
 
 /// Each candidate with every combination of bounce settings.

@@ -1,15 +1,15 @@
 //! The search of `--max-error` and `--time-budget`, for a caller that can render: render, measure, render again.
 
-use super::candidates::defaults;
+use super::candidates::pilots;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::oracle_light::{OracleLight, OracleThreads};
 use super::picks::usable_sum;
 use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
-use crate::trade::{Goal, start};
+use crate::trade::Goal;
 use ridgelight::plan::REFERENCE_BATCH;
-use ridgelight::scene::{Basis, Bounces, Fuse, Lines, Method, Quality, Scene, setting};
+use ridgelight::scene::{Basis, Lines, Method, Quality, Scene, setting};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
 
@@ -45,43 +45,6 @@ pub struct Chosen {
     pub confidence: Option<f64>,
     /// All trials, in order, including the chosen one.
     pub trials: Vec<Trial>,
-}
-
-/// Settings of the first frames: the defaults, finer ones and coarse ones. Probes are taken where their pictures differ
-/// most ([`unsure`]).
-fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
-    let coarse = Quality {
-        azimuths: 8,
-        sun_azimuths: 2,
-        lines: Lines::FourCells,
-        fuse: Fuse::AimedNearest,
-        table_elevations: 64,
-        subsample: 2,
-        bounces: Bounces { azimuths: 8, ..Bounces::default() },
-        ..start()
-    };
-    let defaults = defaults(scene);
-    // The exact shadows of suns need the default lines.
-    let lines = if defaults.method == Method::Auto { defaults.lines } else { Lines::HalfCell };
-    let fine = Quality { azimuths: 48, sun_azimuths: 16, lines, table_elevations: 512, ..defaults };
-    [defaults, fine, coarse].map(|mut quality| {
-        quality.bounces.count = bounces;
-        // Where a setting has no effect, candidates have its default. With another, the search would render the same picture twice.
-        let plain = start();
-        if bounces == 0 {
-            (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
-        }
-        for (part, setting, value) in [
-            (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
-            (Part::Table, &mut quality.table_elevations, plain.table_elevations),
-            (Part::Strips, &mut quality.sun_azimuths, plain.sun_azimuths),
-        ] {
-            if !part.is_in(scene) {
-                *setting = value;
-            }
-        }
-        quality
-    })
 }
 
 /// Bounced light, which the choice must also get right.
@@ -548,66 +511,4 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use ridgelight::scene::{HeightField, Lights, Surface};
-
-    /// The texels that confirm a choice are the requested ones; where more are wanted, also some of a new seed; or all texels, each
-    /// once.
-    #[test]
-    fn requested_texels_confirm_the_choice() {
-        let heights: Vec<f64> = (0..80).map(|i| f64::from(i * i % 11)).collect();
-        let scene = Scene {
-            field: HeightField::new(8, 10, &heights, [1.0; 2], None).unwrap(),
-            surface: Surface::default(),
-            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-        };
-        let unsure: Vec<f64> = (0..80).map(|i| f64::from(i % 7)).collect();
-        OracleLight::with(&Lit::of(&scene), |oracle| {
-            let of = |count: usize, seed: u64| Probes::by(oracle, count, seed, &unsure).unwrap();
-            let goal = Goal::MaxError(0.1);
-            let mut judge = Judge::new(oracle, (20, 3), unsure.clone(), None, goal).unwrap();
-            let requested = judge.request(16).unwrap();
-            assert_ne!(of(20, requested.seed).places(), judge.probes.places());
-            let own = of(16, requested.seed);
-            assert_eq!(judge.confirming(requested, 16).unwrap().places(), own.places());
-            let more = judge.confirming(requested, 24).unwrap();
-            let others = of(8, judge.seed);
-            assert_eq!(more.places(), [own.places(), others.places()].concat());
-            assert_ne!(others.places(), of(8, requested.seed).places());
-            let all = judge.confirming(requested, 80).unwrap();
-            assert_eq!(all.places(), (0..80).collect::<Vec<usize>>());
-        });
-    }
-
-    /// With 3000 probes the bound's square lies 3e-4 above the error's, and so does the square of 2 %, halfway to a goal of 3 %.
-    /// The square of half the way to the second goal lies half as far above: four times the probes. A goal far away takes
-    /// the fewest, one as near as the bound all.
-    #[test]
-    fn the_distance_to_the_goal_decides_how_many_probes_confirm() {
-        let measured = Measured { error: 0.01, at_most: 0.02 };
-        let expected = Expected { error: 0.005, factor: 1.9 };
-        let most = 30_000;
-        let count = |measured: Measured, goal: Goal| {
-            confirming_count(measured, 3000, (goal, expected), Probes::ONE_BOUND, most)
-        };
-        assert_eq!(count(measured, Goal::MaxError(0.03)), 3000);
-        let nearer = count(measured, Goal::MaxError(2.0 * 2.5e-4_f64.sqrt() - 0.01));
-        // Rounded up.
-        assert!((12_000..=12_001).contains(&nearer), "{nearer}");
-        assert_eq!(count(measured, Goal::MaxError(0.5)), FEWEST_CONFIRMING);
-        assert_eq!(count(measured, Goal::MaxError(0.0101)), most);
-        assert_eq!(count(measured, Goal::MaxCost(1.0)), most);
-        let sure = Measured { error: 0.01, at_most: 0.0101 };
-        assert_eq!(count(sure, Goal::MaxCost(1.0)), FEWEST_CONFIRMING);
-        // More was expected: the earlier probes may have missed texels.
-        let more = Expected { factor: 2.1, ..expected };
-        let all = |goal| confirming_count(sure, 3000, (goal, more), Probes::ONE_BOUND, most);
-        assert_eq!(all(Goal::MaxCost(1.0)), most);
-        assert_eq!(all(Goal::MaxError(0.0104)), most);
-        assert_eq!(all(Goal::MaxError(0.5)), FEWEST_CONFIRMING);
-        // Where nothing differs, or nothing is known.
-        assert_eq!(count(Measured { error: 0.0, at_most: 0.0 }, Goal::MaxCost(1.0)), most);
-        assert_eq!(count(Measured::UNKNOWN, Goal::MaxError(0.1)), most);
-    }
-}
+mod tests;
