@@ -49,7 +49,7 @@ pub struct Chosen {
 
 /// Bounced light, which the choice must also get right.
 pub struct Bounced<'t> {
-    /// Number of bounces: [`Bounces::count`], above 0.
+    /// Number of bounces: [`count`](ridgelight::scene::Bounces::count), above 0.
     pub count: u32,
     /// Traces bounced light of texels, by index, in this many batches of paths
     /// ([`REFERENCE_BATCH`]) of a seed.
