@@ -1,8 +1,8 @@
 use crate::errors::{Failure, RidgelightResult, done};
 
 /// Fills heights without data before they go to the device: those that are NaN, and those whose byte in `voids`
-/// is not 0, where `voids` is not null. Each takes the mean of its known neighbours, from the rim inwards, as
-/// the command line does; the others keep their bits. Every byte of `voids` becomes 1 or 0: whether it is a
+/// is not 0, where `voids` is not null. They are filled smoothly from the heights around them, as on the
+/// command line; the others keep their bits. Every byte of `voids` becomes 1 or 0: whether it is a
 /// void. Filled texels are lit too; the caller masks that light. For camera pictures the mask goes to the
 /// device, see RidgelightScene's has_voids.
 ///

@@ -35,9 +35,39 @@ pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool
     Ok(())
 }
 
-/// Fills voids layer by layer from their rim: each takes the mean of its known neighbours (of eight). The result is
-/// continuous at the rim and independent of scan order.
+/// Passes of [`relax`]. Layers that grew from opposite rims meet in cliffs three times as steep as the ground around voids;
+/// 32 passes leave slopes like those around, and more of them are further from the heights that were there in narrow voids
+/// (tests/files/real.rs).
+const PASSES: usize = 32;
+
+/// Fills voids layer by layer from their rim, then relaxes them. No height is above or below the rim's. The result does not
+/// depend on the order of grid points.
 pub(super) fn fill(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
+    fill_layers(rows, cols, heights, voids);
+    relax(rows, cols, heights, voids, PASSES);
+}
+
+/// Passes of Jacobi's iteration for Laplace's equation: each void takes the mean of its four neighbours, beyond the edge of
+/// itself.
+fn relax(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool], passes: usize) {
+    let holes: Vec<usize> = (0..heights.len()).filter(|&i| voids[i]).collect();
+    let mut means = vec![0.0; holes.len()];
+    for _ in 0..passes {
+        for (mean, &i) in means.iter_mut().zip(&holes) {
+            let (r, c) = (i / cols, i % cols);
+            let at = |on_field: bool, n: usize| f64::from(heights[if on_field { n } else { i }]);
+            let across = at(c > 0, i.wrapping_sub(1)) + at(c + 1 < cols, i + 1);
+            let along = at(r > 0, i.wrapping_sub(cols)) + at(r + 1 < rows, i + cols);
+            *mean = (0.25 * (across + along)) as f32;
+        }
+        for (mean, &i) in means.iter().zip(&holes) {
+            heights[i] = *mean;
+        }
+    }
+}
+
+/// Each void takes the mean of its known neighbours (of eight), from the rim inwards.
+fn fill_layers(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
     let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
     let neighbours = |i: usize| {
         let (r, c) = (i / cols, i % cols);
