@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Headless, Pixels, Timing};
 use ridgelight::plan::{self, Pass, Picture, Plan, Resource};
-use ridgelight::scene::{Method, Normals, Quality, Scene};
+use ridgelight::scene::{HeightField, Method, Normals, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
 
@@ -80,7 +80,14 @@ impl Drawn {
     }
 }
 
-/// Draws a picture once and then `runs` times. Keeps what `pause` returns from the end of the first run on.
+/// Leaves out the texels that are voids: NaN, as in files.
+fn mask_voids(light: &mut Colours, field: &HeightField) {
+    for (texel, _) in light.iter_mut().zip(field.voids().unwrap_or_default()).filter(|t| *t.1) {
+        *texel = [f64::NAN; 3];
+    }
+}
+
+/// Draws a picture once and then `runs` times. Keeps what `pause` returns from the end of the first run on. NaN at voids.
 pub fn drawn_as<P>(
     gpu: &mut Headless,
     scene: &Scene,
@@ -96,7 +103,8 @@ pub fn drawn_as<P>(
             all.push(gpu.draw(frame)?);
         }
         let runs = if all.is_empty() { vec![first] } else { all };
-        let (plan, light) = (frame.plan().clone(), colours(&gpu.pixels(frame, 0)?));
+        let (plan, mut light) = (frame.plan().clone(), colours(&gpu.pixels(frame, 0)?));
+        mask_voids(&mut light, &scene.field);
         let mut indirect = vec![[0.0; 3]; light.len()];
         for (i, (_, output)) in plan.outputs().enumerate() {
             if output.name.starts_with("indirect.") {

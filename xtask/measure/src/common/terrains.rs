@@ -54,7 +54,8 @@ pub struct Terrain {
     pub field: HeightField,
 }
 
-/// The middle of the bundled mountain, also three times as steep, and synthetic fields; the middles of real ones of a folder.
+/// The middle of the bundled mountain, also three times as steep, and synthetic fields; the middles of real ones of a folder, with
+/// their voids.
 /// `mountain` and `side`: grid points along a side.
 pub fn terrains(folder: Option<&Path>, [mountain, side]: [usize; 2]) -> Result<Vec<Terrain>> {
     let bundled = |steeper: f64| -> Result<HeightField> {
@@ -69,7 +70,7 @@ pub fn terrains(folder: Option<&Path>, [mountain, side]: [usize; 2]) -> Result<V
     ];
     let Some(folder) = folder else { return Ok(all) };
     for (name, ground) in OF_A_FOLDER {
-        let field = inputs::middle(&inputs::field_of(folder, name)?, side)?;
+        let field = inputs::cut(&inputs::field_of(folder, name)?, side)?;
         all.push(of(format!("{name}, {side}²"), ground, field));
     }
     Ok(all)

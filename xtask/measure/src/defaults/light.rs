@@ -5,7 +5,8 @@ use std::path::Path;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
 use ridgelight::scene::{
-    Border, BounceEngine, Bounces, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene, Sun,
+    Border, BounceEngine, Bounces, Fuse, HeightField, KeyLight, Lights, Lines, Method, Quality,
+    Scene, Sun,
 };
 use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
@@ -190,7 +191,7 @@ pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
     Ok(all)
 }
 
-/// Exact results.
+/// Exact results, NaN at voids.
 pub enum Exact {
     Light(Colours),
     /// Elevations in even azimuths, whose number is a multiple of that of every setting.
@@ -237,8 +238,12 @@ impl Light {
                 let finest = Quality { azimuths, ..exact };
                 let mut frame = self.frame(gpu, scene, &finest)?;
                 gpu.draw(&mut frame)?;
-                let elevations = gpu.pixels(&frame, 0)?.values;
+                let mut elevations = gpu.pixels(&frame, 0)?.values;
                 gpu.end(frame);
+                let voids = scene.field.voids().unwrap_or_default();
+                for plane in elevations.chunks_exact_mut(voids.len().max(1)) {
+                    plane.iter_mut().zip(voids).filter(|v| *v.1).for_each(|(e, _)| *e = f32::NAN);
+                }
                 Exact::Horizons(elevations)
             }
         })
@@ -246,7 +251,7 @@ impl Light {
 }
 
 impl Exact {
-    /// Errors of a frame that was drawn with some settings.
+    /// Errors of a frame that was drawn with some settings, outside voids.
     pub fn errors(
         &self,
         gpu: &mut Headless,
@@ -254,7 +259,7 @@ impl Exact {
         frame: &Frame,
     ) -> Result<Errors> {
         let found = gpu.pixels(frame, 0)?;
-        // Errors leave out pairs with NaN, and these fields have no voids.
+        // Errors leave out pairs with NaN, which only the exact results have, at voids.
         if let Some(i) = found.values.iter().position(|v| v.is_nan()) {
             return Err(Error::Device {
                 doing: "comparing with exact results".into(),
@@ -270,7 +275,7 @@ impl Exact {
         let degrees = if quality.lines == Lines::Exact {
             let oracle = Oracle::new(field, surface.border);
             let azimuths = plan::circle_rad(quality, field.cell_m())?;
-            at_picks(&oracle, &azimuths, &found.values, [rows, cols])?
+            at_picks(&oracle, &azimuths, &found.values, field)?
         } else {
             // Azimuth k of M is azimuth k · N / M of all N.
             let step = elevations.len() / (rows * cols) / quality.azimuths as usize;
@@ -287,10 +292,12 @@ fn at_picks(
     oracle: &Oracle,
     azimuths: &[f64],
     elevations: &[f32],
-    [rows, cols]: [usize; 2],
+    field: &HeightField,
 ) -> Result<HorizonError> {
-    let plane = rows * cols;
-    let picks: Vec<usize> = (1..=PICKS).map(|k| inputs::spread(k, plane)).collect();
+    let (plane, cols) = (field.rows() * field.cols(), field.cols());
+    let is_void = |pick: &usize| field.voids().is_some_and(|v| v[*pick]);
+    let picks: Vec<usize> =
+        (1..=PICKS).map(|k| inputs::spread(k, plane)).filter(|p| !is_void(p)).collect();
     let (mut found, mut exact) = (Vec::new(), Vec::new());
     for (layer, phi) in azimuths.iter().enumerate() {
         for pick in &picks {
