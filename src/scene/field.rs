@@ -35,7 +35,7 @@ impl HeightField {
     /// north, column 0 in the west.
     ///
     /// `cell_m` is the spacing of columns and of rows, each [1e-12..1e12]. `voids`, one mark per grid point, marks heights
-    /// without data: their values are ignored and filled from their neighbours.
+    /// without data: their values are ignored and filled from the heights around them.
     ///
     /// # Errors
     /// Sizes that are 0 or do not match; cells that are not positive and finite; a height outside voids that is not finite

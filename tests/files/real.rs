@@ -3,6 +3,7 @@
 use crate::absolute;
 use ridgelight::scene::{HeightField, fill_voids};
 use ridgelight_io::*;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// A folder of development data beside the clone, if this checkout has one.
@@ -91,44 +92,66 @@ fn real_files_beside_the_clone() {
     println!("{skipped} of 10 real files are not beside this clone");
 }
 
-/// Squares of the bundled mountain are made voids, which covers rims of all shapes that lie far apart in height. The ground that
-/// fills them is no steeper than the ground that was there, keeps to the range of the rim, and the rim keeps its bits.
-/// (Layers from the rim alone meet in cliffs: 200 m from one grid point to the next for 83 m, at a side of 8.)
+/// Fills the voids of heights that are `cols` wide.
+fn filled(heights: &[f32], cols: usize, is_void: impl Fn(usize, usize) -> bool) -> Vec<f32> {
+    let voids: Vec<bool> = (0..heights.len()).map(|i| is_void(i / cols, i % cols)).collect();
+    let mut all = heights.to_vec();
+    voids.iter().zip(&mut all).filter(|v| *v.0).for_each(|(_, h)| *h = f32::NAN);
+    fill_voids([heights.len() / cols, cols], &mut all, &voids).unwrap();
+    all
+}
+
+/// Squares of the bundled mountain are made voids, apart and at edges and corners. Each is filled by ground that is no steeper than
+/// the steepest ground that was there, and within the range of the known heights around it. (By layers alone it meets in steps of
+/// 200 m, where the steepest real one has 83 m, at a side of 8.) A mirrored field has mirrored heights, except for rounding.
 #[test]
 fn voids_of_a_mountain_are_filled_without_cliffs() {
     let field = read_heights(&asset("mt_washington_256.png"), &HeightOptions::default()).unwrap();
-    let (rows, cols) = (field.rows(), field.cols());
-    for side in [1, 8, 24] {
-        let in_square = |x: usize| (20..236).contains(&x) && (x - 20) % 48 < side;
-        let voids: Vec<bool> =
-            (0..rows * cols).map(|i| in_square(i / cols) && in_square(i % cols)).collect();
-        assert_eq!(voids.iter().filter(|v| **v).count(), 25 * side * side);
-        let mut filled = field.heights_m().to_vec();
-        voids.iter().zip(&mut filled).filter(|v| *v.0).for_each(|(_, h)| *h = f32::NAN);
-        fill_voids([rows, cols], &mut filled, &voids).unwrap();
-        // The steepest step from or to a void.
-        let steepest = |heights: &[f32]| {
-            let step = |i: usize, n: usize| (heights[i] - heights[n]).abs();
-            let all = (0..rows * cols).filter(|i| voids[*i]);
-            all.flat_map(|i| [i - 1, i + 1, i - cols, i + cols].map(|n| step(i, n)))
-                .fold(0.0, f32::max)
-        };
-        let (found, real) = (steepest(&filled), steepest(field.heights_m()));
-        assert!(found > 0.0 && found <= real, "side {side}: {found} m for {real} m");
-        for corner in (0..rows * cols).filter(|i| voids[*i] && !voids[i - 1] && !voids[i - cols]) {
-            let [top, left] = [corner / cols, corner % cols];
-            let square = |margin: usize| {
-                let rows = top - margin..top + side + margin;
-                rows.flat_map(move |r| {
-                    (left - margin..left + side + margin).map(move |c| r * cols + c)
-                })
-            };
-            let rim = square(1).filter(|i| !voids[*i]).map(|i| filled[i]);
-            let (low, high) = rim.fold((f32::MAX, f32::MIN), |(l, h), z| (l.min(z), h.max(z)));
-            assert!(square(0).all(|i| (low..=high).contains(&filled[i])), "side {side}: {corner}");
+    let (n, real) = (field.cols(), field.heights_m());
+    // Sides of squares and the distance from one to the next.
+    for (side, pitch) in [(8, 31), (24, 58), (100, 156)] {
+        let is_void = |r: usize, c: usize| r % pitch < side && c % pitch < side;
+        let found = filled(real, n, is_void);
+        let mirrored: Vec<f32> = (0..n * n).map(|i| real[i - i % n + n - 1 - i % n]).collect();
+        let mirrored = filled(&mirrored, n, |r, c| is_void(r, n - 1 - c));
+        let mut steepest = [0.0_f32; 2];
+        let mut ranges = HashMap::new();
+        for (i, height) in found.iter().enumerate() {
+            let (r, c) = (i / n, i % n);
+            assert!((height - mirrored[i - c + n - 1 - c]).abs() <= 4.0 * f32::EPSILON * 2000.0);
+            if !is_void(r, c) {
+                assert_eq!(height.to_bits(), real[i].to_bits());
+                continue;
+            }
+            let near = [(r.wrapping_sub(1), c), (r + 1, c), (r, c.wrapping_sub(1)), (r, c + 1)];
+            for (row, col) in near.into_iter().filter(|(r, c)| *r < n && *c < n) {
+                for (most, heights) in steepest.iter_mut().zip([&found[..], real]) {
+                    *most = most.max((heights[i] - heights[row * n + col]).abs());
+                }
+            }
+            let corner = [r - r % pitch, c - c % pitch];
+            let range = ranges.entry(corner).or_insert_with(|| {
+                let around = |first: usize| first.saturating_sub(1)..(first + side + 1).min(n);
+                let known = around(corner[0]).flat_map(|r| around(corner[1]).map(move |c| (r, c)));
+                let known = known.filter(|(r, c)| !is_void(*r, *c)).map(|(r, c)| real[r * n + c]);
+                known.fold([f32::MAX, f32::MIN], |[l, h], z| [l.min(z), h.max(z)])
+            });
+            assert!((range[0]..=range[1]).contains(height), "side {side}: {height} of {range:?}");
         }
-        for (i, h) in filled.iter().enumerate().filter(|(i, _)| !voids[*i]) {
-            assert_eq!(h.to_bits(), field.heights_m()[i].to_bits());
-        }
+        assert!(0.0 < steepest[0] && steepest[0] <= steepest[1], "side {side}: {steepest:?} m");
     }
+    let level = filled(&[5.0; 42], 7, |r, c| r < 3 && c > 1 || r == 5);
+    assert_eq!(level, [5.0; 42]);
+}
+
+/// Two plains, a void 200 wide between them. What fills it rises evenly, as Laplace's equation has it: at most twice as steep.
+#[test]
+fn a_wide_void_between_two_plains_has_no_step() {
+    let (rows, cols, width) = (9, 240, 200);
+    let heights: Vec<f32> =
+        (0..rows * cols).map(|i| if i % cols < 120 { 0.0 } else { 1000.0 }).collect();
+    let found = filled(&heights, cols, |_, c| (20..20 + width).contains(&c));
+    let steepest = found.windows(2).enumerate().filter(|(i, _)| (i + 1) % cols != 0);
+    let steepest = steepest.map(|(_, w)| w[1] - w[0]).fold(0.0, f32::max);
+    assert!(steepest <= 2.0 * 1000.0 / (width + 1) as f32, "{steepest} m");
 }

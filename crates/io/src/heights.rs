@@ -268,7 +268,7 @@ fn about(field: &HeightField) -> [Vec<String>; 2] {
     if let Some(voids) = field.voids() {
         let share = voids.iter().filter(|v| **v).count() as f64 / voids.len() as f64;
         let text = format!(
-            "{:.3} % of the grid points are voids; their heights are filled from neighbours, their results left out",
+            "{:.3} % of the grid points are voids; their heights are filled from those around them, their results left out",
             100.0 * share
         );
         if share >= 0.5 {

@@ -1,4 +1,4 @@
-//! Voids: grid points without data. Their heights are filled from their neighbours before anything is computed.
+//! Voids: grid points without data. Their heights are filled from those around them before anything is computed.
 
 use super::HEIGHT_LIMIT;
 use crate::{Error, Result};
@@ -35,39 +35,72 @@ pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool
     Ok(())
 }
 
-/// Passes of [`relax`]. Layers that grew from opposite rims meet in cliffs three times as steep as the ground around voids;
-/// 32 passes leave slopes like those around, and more of them are further from the heights that were there in narrow voids
-/// (tests/files/real.rs).
-const PASSES: usize = 32;
+/// Fewest iterations of [`smooth`] and most updates of a void, over all iterations: about a tenth of a second.
+const FEWEST_ITERATIONS: usize = 32;
+const MOST_UPDATES: usize = 1 << 25;
 
-/// Fills voids layer by layer from their rim, then relaxes them. No height is above or below the rim's. The result does not
-/// depend on the order of grid points.
+/// Fills voids layer by layer from the known heights around them, then smooths them: layers that come from opposite sides meet in
+/// steps, four times as steep as real ground in what was measured. No height leaves the range of the known heights around its void.
+///
+/// Iterations halve the difference to the solution of Laplace's equation in about d², where d is the number of layers, so that 4 d²
+/// leave a tenth. Where these are too many, steps of voids wider than some 20 grid points remain: after 32 iterations up to a tenth
+/// of the former step.
 pub(super) fn fill(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
-    fill_layers(rows, cols, heights, voids);
-    relax(rows, cols, heights, voids, PASSES);
+    let layers = fill_layers(rows, cols, heights, voids);
+    let count = voids.iter().filter(|v| **v).count();
+    let affordable = (MOST_UPDATES / count.max(1)).max(FEWEST_ITERATIONS);
+    smooth(
+        [rows, cols],
+        heights,
+        voids,
+        (4 * layers * layers).clamp(FEWEST_ITERATIONS, affordable),
+    );
 }
 
-/// Passes of Jacobi's iteration for Laplace's equation: each void takes the mean of its four neighbours, beyond the edge of
-/// itself.
-fn relax(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool], passes: usize) {
-    let holes: Vec<usize> = (0..heights.len()).filter(|&i| voids[i]).collect();
-    let mut means = vec![0.0; holes.len()];
-    for _ in 0..passes {
-        for (mean, &i) in means.iter_mut().zip(&holes) {
-            let (r, c) = (i / cols, i % cols);
-            let at = |on_field: bool, n: usize| f64::from(heights[if on_field { n } else { i }]);
-            let across = at(c > 0, i.wrapping_sub(1)) + at(c + 1 < cols, i + 1);
-            let along = at(r > 0, i.wrapping_sub(cols)) + at(r + 1 < rows, i + cols);
-            *mean = (0.25 * (across + along)) as f32;
+/// Jacobi's iteration for Laplace's equation on the grid, whatever its cells: each void takes the mean of its four neighbours. A
+/// neighbour beyond the edge of the field counts as the void's own height. The last iteration keeps half of the height,
+/// which removes what alternates from point to point.
+fn smooth([rows, cols]: [usize; 2], heights: &mut [f32], voids: &[bool], iterations: usize) {
+    // Voids side by side along a row.
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for row in 0..rows {
+        let mut at = row * cols;
+        for run in voids[at..at + cols].chunk_by(|a, b| a == b) {
+            if run[0] {
+                runs.push([at, at + run.len()]);
+            }
+            at += run.len();
         }
-        for (mean, &i) in means.iter().zip(&holes) {
-            heights[i] = *mean;
+    }
+    let mut means = Vec::with_capacity(runs.iter().map(|[start, end]| end - start).sum());
+    for iteration in 1..=iterations {
+        means.clear();
+        for [start, end] in &runs {
+            let (row, first) = (start / cols, start - start % cols);
+            for i in *start..*end {
+                let own = f64::from(heights[i]);
+                let at = |on_field: bool, n: usize| match on_field {
+                    true => f64::from(heights[n]),
+                    false => own,
+                };
+                let across = at(i > first, i.wrapping_sub(1)) + at(i + 1 < first + cols, i + 1);
+                let along = at(row > 0, i.wrapping_sub(cols)) + at(row + 1 < rows, i + cols);
+                let mean = 0.25 * (across + along);
+                let is_last = iteration == iterations;
+                means.push(if is_last { 0.5 * (mean + own) } else { mean } as f32);
+            }
+        }
+        let mut at = 0;
+        for [start, end] in &runs {
+            let count = end - start;
+            heights[*start..*end].copy_from_slice(&means[at..at + count]);
+            at += count;
         }
     }
 }
 
-/// Each void takes the mean of its known neighbours (of eight), from the rim inwards.
-fn fill_layers(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
+/// Each void takes the mean of its known neighbours (of eight), from the outside inwards. Returns the number of layers.
+fn fill_layers(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) -> usize {
     let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
     let neighbours = |i: usize| {
         let (r, c) = (i / cols, i % cols);
@@ -77,7 +110,9 @@ fn fill_layers(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
     };
     let mut rim: Vec<usize> =
         (0..heights.len()).filter(|&i| !known[i] && neighbours(i).any(|n| known[n])).collect();
+    let mut layers = 0;
     while !rim.is_empty() {
+        layers += 1;
         let layer: Vec<f32> = rim
             .iter()
             .map(|&i| {
@@ -97,6 +132,7 @@ fn fill_layers(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
         next.dedup();
         rim = next;
     }
+    layers
 }
 
 #[cfg(test)]

@@ -296,7 +296,7 @@ fn a_periodic_field_occludes_across_its_seam() {
     assert_eq!(PERIOD_CAP, 64);
 }
 
-/// Voids occlude as their filling, the mean of their neighbours: here the plain's own level.
+/// Voids occlude as what fills them: here the plain's own level.
 #[test]
 fn voids_occlude_as_they_are_filled() {
     let mut heights = vec![0.0; 49];

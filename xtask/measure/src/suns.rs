@@ -57,7 +57,7 @@ pub fn run(mut args: Args) -> Outcome {
     let terrains = terrains(args.folder().as_deref(), SIDES)?;
     let mut gpu = args.open()?;
     println!(
-        "{}: a sun {DIAMETER}° wide, {} slices; RMSE against brute force in the same slices, times of frames as medians of {TURNS}, drawn in turn\n",
+        "{}: a sun {DIAMETER}° wide, {} slices; RMSE against brute force in the same slices, without voids, times of frames as medians of {TURNS}, drawn in turn\n",
         device(&gpu),
         Quality::default().sun_azimuths
     );

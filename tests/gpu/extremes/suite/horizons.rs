@@ -120,7 +120,7 @@ fn pit(name: &str, base: f64, depth: f64) -> Case {
     })
 }
 
-/// Voids are filled from their rim, which is level here: as if there were none. Their contents, NaN and infinities,
+/// Voids are filled from the ground around them, which is level here: as if there were none. Their contents, NaN and infinities,
 /// are never read.
 fn voids() -> Case {
     let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
@@ -132,7 +132,7 @@ fn voids() -> Case {
         marks[i] = true;
     }
     let f = HeightField::new(SIDE, SIDE, &heights, [1.0, 1.0], Some(marks)).expect("a good field");
-    let expected = "NaN and infinities marked as no-data, filled from their level rim: as a spike of 1 cell without them";
+    let expected = "NaN and infinities marked as no-data, filled from level ground: as a spike of 1 cell without them";
     let bound = "the method's, at distance d";
     horizons("voids of NaN and infinities", (expected, bound), f, ALL_ROUND, |found| {
         sees_spike(found, 1.0)

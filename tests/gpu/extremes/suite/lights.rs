@@ -300,7 +300,7 @@ fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
     })
 }
 
-/// Level ground with voids, which are filled from their rim; their contents are never read.
+/// Level ground with voids, which are filled from it; their contents are never read.
 pub fn filled_voids() -> HeightField {
     let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
     let marks: Vec<bool> = (0..SIDE * SIDE).map(|i| is_void(i / SIDE, i % SIDE)).collect();

@@ -154,11 +154,7 @@ fn judged_while<P>(
     pause: impl FnOnce() -> P,
 ) -> Result<Drawn> {
     let found = drawn_as(gpu, scene, (quality, runs), Picture::default(), pause)?;
-    let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
-    let plane = |c: usize| {
-        let texels = found.light.iter().enumerate();
-        texels.map(|(i, t)| if is_void(i) { f32::NAN } else { t[c] as f32 }).collect()
-    };
+    let plane = |c: usize| found.light.iter().map(|t| t[c] as f32).collect();
     let passes = found.middle().iter().map(|t| (t.label.clone(), t.ns)).collect();
     Ok(Drawn { planes: [0, 1, 2].map(plane).into(), passes })
 }

@@ -111,6 +111,7 @@ pub fn drawn_as<P>(
                 add(&mut indirect, 1.0, &colours(&gpu.pixels(frame, i)?));
             }
         }
+        mask_voids(&mut indirect, &scene.field);
         Ok(Drawn { light, indirect, runs, plan })
     })
 }

@@ -88,7 +88,7 @@ pub fn cut(field: &HeightField, side: usize) -> Result<HeightField> {
     HeightField::new(rows, cols, &heights, field.cell_m(), voids)
 }
 
-/// The middle of a field without its voids.
+/// The middle of a field without its voids: their filled heights count as ground.
 pub fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
     let part = cut(field, side)?;
     let heights: Vec<f64> = part.heights_m().iter().map(|h| f64::from(*h)).collect();

@@ -240,9 +240,9 @@ impl Light {
                 gpu.draw(&mut frame)?;
                 let mut elevations = gpu.pixels(&frame, 0)?.values;
                 gpu.end(frame);
-                let voids = scene.field.voids().unwrap_or_default();
-                for plane in elevations.chunks_exact_mut(voids.len().max(1)) {
-                    plane.iter_mut().zip(voids).filter(|v| *v.1).for_each(|(e, _)| *e = f32::NAN);
+                if let Some(voids) = scene.field.voids() {
+                    let marks = voids.iter().cycle();
+                    elevations.iter_mut().zip(marks).filter(|v| *v.1).for_each(|v| *v.0 = f32::NAN);
                 }
                 Exact::Horizons(elevations)
             }
@@ -296,8 +296,8 @@ fn at_picks(
 ) -> Result<HorizonError> {
     let (plane, cols) = (field.rows() * field.cols(), field.cols());
     let is_void = |pick: &usize| field.voids().is_some_and(|v| v[*pick]);
-    let picks: Vec<usize> =
-        (1..=PICKS).map(|k| inputs::spread(k, plane)).filter(|p| !is_void(p)).collect();
+    let places = (1..).map(|k| inputs::spread(k, plane));
+    let picks: Vec<usize> = places.filter(|p| !is_void(p)).take(PICKS).collect();
     let (mut found, mut exact) = (Vec::new(), Vec::new());
     for (layer, phi) in azimuths.iter().enumerate() {
         for pick in &picks {

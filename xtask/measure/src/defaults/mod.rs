@@ -76,7 +76,7 @@ pub fn run(mut args: Args) -> Outcome {
         "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices for a key light up to 25° wide, more in proportion for a wider one; medians of {TURNS}, drawn in \
          turn (exact lines and brute force once)\n\
          Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
-         {PERIODIC_AZIMUTHS}) and tables of 1024 elevations; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\
+         {PERIODIC_AZIMUTHS}) and tables of 1024 elevations, without voids; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\
          Bounces: {BOUNCES}, albedo {BOUNCED_ALBEDO}; the error is of direct and indirect light together, against brute force in {FINE_AZIMUTHS} azimuths, its \
          bounces in {FINE_BOUNCE_AZIMUTHS} at every grid point\n\
          Error of horizons: mean, °, against brute force in the same azimuths, so that brute force has none; exact lines: against the \
