@@ -29,8 +29,8 @@ fn picture() -> Result<String> {
         "![A mountain without shadows, as Ridgelight lights it, and its reference](docs/pictures/demo.png)\n\n\
          | without shadows | Ridgelight, {azimuths} azimuths | brute force, {reference_azimuths} azimuths |\n|:-:|:-:|:-:|\n\
          | | {ours_ms:1} ms | {reference_ms:1} ms |\n| error {off_error%2} % | error {ours_error%2} % | the reference |\n\n\
-         {cols} × {rows} grid points (SRTM) under the bundled sky and a sun 10° high; [How fast](#how-fast) has \
-         another field and light. Error: RMSE relative to the mean.\n",
+         {cols} × {rows} grid points (SRTM) under the bundled sky and a sun 10° high; [How fast](#how-fast) times \
+         another scene. Error: RMSE relative to the mean.\n",
     )
 }
 
