@@ -5,7 +5,8 @@ const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0100_0000_01b3;
 
 impl HeightField {
-    /// A hash that identifies a field, the same on every machine and in every version that fills its voids alike. Baked files store it; a load checks it.
+    /// A hash that identifies a field, the same on every machine and in every version that fills its voids alike. Baked files store
+    /// it; a load checks it.
     ///
     /// FNV-1a of, little-endian: the text "ridgelight field 1", rows and columns (u64), cells (f64), the border (0 plane,
     /// 1 open, 2 periodic; a byte), every height above the base (f32, row-major, voids filled, -0 as 0), and, where any

@@ -251,6 +251,23 @@ impl Light {
 }
 
 impl Exact {
+    /// Exact results are NaN at voids and nowhere else: the errors must not leave out anything else.
+    fn check_voids(&self, voids: &[bool]) -> Result<()> {
+        let is_void = |i: usize| voids.get(i % voids.len().max(1)) == Some(&true);
+        let marks: Vec<bool> = match self {
+            Self::Light(light) => light.iter().map(|t| t.iter().any(|v| v.is_nan())).collect(),
+            Self::Horizons(elevations) => elevations.iter().map(|e| e.is_nan()).collect(),
+        };
+        let wrong = marks.iter().enumerate().find(|(i, is_nan)| **is_nan != is_void(*i));
+        match wrong {
+            None => Ok(()),
+            Some((i, _)) => Err(Error::Device {
+                doing: "drawing exact results".into(),
+                reason: format!("value {i} is wrong: expected NaN at voids, numbers elsewhere"),
+            }),
+        }
+    }
+
     /// Errors of a frame that was drawn with some settings, outside voids.
     pub fn errors(
         &self,
@@ -266,6 +283,7 @@ impl Exact {
                 reason: format!("value {i} of {} is NaN, expected numbers", found.name),
             });
         }
+        self.check_voids(scene.field.voids().unwrap_or_default())?;
         let elevations = match self {
             Self::Light(exact) => return Ok([error(&colours(&found), exact)?, 0.0]),
             Self::Horizons(elevations) => elevations,
