@@ -269,10 +269,11 @@ impl<'a> ActiveLights<'a> {
         for (i, key) in &self.keys {
             let slices = key.slices(quality.sun_azimuths);
             // More for specular have a note of their own.
-            if slices > quality.sun_azimuths
+            if slices != quality.sun_azimuths
                 && slices == self.key_azimuths(key, quality.sun_azimuths)
             {
-                notes.push(format!("key {}: {slices} slices, as it is wider than 25°", i + 1));
+                let than = if slices > quality.sun_azimuths { "wider" } else { "narrower" };
+                notes.push(format!("key {}: {slices} slices, as it is {than} than 25°", i + 1));
             }
         }
         Ok(lists)

@@ -20,7 +20,7 @@ use crate::common::terrains::Ground;
 /// Of a folder's `env/`: a low sun.
 pub const LOW_SUN: &str = "spiaggia_di_mondello_1k.hdr";
 /// Slices of a key light's exact result over those of the default.
-pub const FINER: u32 = 4;
+pub const FINER: u32 = 8;
 /// Azimuths of the exact result of a sky or an environment, and fewer with border `periodic`, where brute force is slowest. At
 /// least twice those of every setting compared.
 pub const FINE_AZIMUTHS: u32 = 256;
