@@ -1,5 +1,5 @@
-//! Ridgelight lights height fields that may change every frame: exact self-shadowing horizons under sky, environment,
-//! suns, key lights and sphere lights, and indirect light. It appends Vulkan compute passes to a command buffer.
+//! Ridgelight computes the light on height fields that may change every frame: sky, environment, suns, key lights, sphere
+//! lights and bounces, with shadows from horizons. It appends Vulkan compute passes to a command buffer.
 //!
 //! Data flows one way: a [`scene`] (field, surface, lights) and a [`Quality`](scene::Quality) become a pure [`plan`].
 //! [`gpu`] records the plan as commands, which write images and timings.

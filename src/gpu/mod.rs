@@ -11,7 +11,8 @@
 //!
 //! # Before there is a device
 //!
-//! [`requirements`] lists what a device needs: Vulkan 1.1 and a queue with compute, no feature and no extension.
+//! [`requirements`] lists what a device needs: Vulkan 1.1, a queue with compute, and subgroup votes in compute shaders; no
+//! feature and no extension.
 //! [`missing`] names what a physical device lacks. [`devices`] lists all devices. [`limits`] are the limits for
 //! a plan.
 //!

@@ -70,7 +70,7 @@ words! {
         /// The same, and every crossing of the texel's own line beside the nearer line's occluder
         ///
         /// Crossings with grid lines and diagonals, a step to either side and one more towards the other line's occluder. Finds
-        /// ridges between steps. Shading takes 3.4 times as long as with [`Aimed`](Self::Aimed) (llvmpipe).
+        /// ridges between steps. Shading takes 2.5 times as long as with [`Aimed`](Self::Aimed) (llvmpipe).
         AimedAround = "aimed-around",
     }
 }
@@ -84,7 +84,7 @@ words! {
         ///
         /// Only where slopes are stored (fuse nearest, slopes).
         F16 = "f16",
-        /// Hull entries as f16 height and u16 step in one word
+        /// Hull entries as f16 height and u16 distance in one word
         ///
         /// As in TW10: heights are rounded to 1/2048 of the largest.
         Packed = "packed",
@@ -161,8 +161,8 @@ words! {
         Nlp = "nlp",
         /// A table of wedges between the horizons of two azimuths
         ///
-        /// Horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008). Slower than slices, with a
-        /// slightly larger error from 8 azimuths on; smaller at 4. Memory: 4 bytes per texel and azimuth.
+        /// Horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008). Slower than slices with
+        /// more than four azimuths; its error has not been measured. Memory: 4 bytes per texel and azimuth.
         Table = "table",
     }
 }
@@ -218,8 +218,8 @@ words! {
         /// The planner's choice: pyramid with specular, else sweep where horizons come from a sweep along lines, else
         /// brute-force
         ///
-        /// On four real fields under two environments `Sweep` took 0.1 to 0.4 of the time of `BruteForce` with the same
-        /// error against the path-traced reference (`cargo measure bounce`).
+        /// On four real fields under two environments `Sweep` took 0.06 to 0.24 of the time of `BruteForce`. Its error is larger
+        /// on steep ground: 9.8 % of the indirect light of one bounce on moss instead of 2.8 % (`cargo measure bounce`).
         Auto = "auto",
     }
 }

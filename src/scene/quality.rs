@@ -71,7 +71,7 @@ settings! {
         /// Higher is faster and less exact.
         ///
         /// Sphere lights are ignored where together they add less than this fraction of the brightest value that one of
-        /// them gives to the texel nearest its foot. The default is one step of a 16-bit image. 0 ignores none.
+        /// them can give to its nearest grid point. The default is one step of a 16-bit image. 0 ignores none.
         Expert "light_cutoff" light_cutoff: f64 = 1.0 / 65536.0, Values::Share;
 
         /// Basis of sphere lights

@@ -260,7 +260,7 @@ typedef struct RidgelightQuality {
     // Basis of sphere lights: 1 exact (default), 2 sh.
     uint32_t light_basis;
     // Largest light that a texel may lose from all sphere lights together, as a share of the brightest light
-    // that one of them would give to level ground at height 0, [0..1], default 1/65536; below 0: none.
+    // that one of them can give to its nearest grid point, [0..1], default 1/65536; below 0: none.
     double light_cutoff;
     // Number of bounces of light, [0..64].
     uint32_t bounces;
@@ -546,7 +546,7 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
 // Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 //
 // Outputs, R32F: "lit_above", the height from which the whole sun is visible, in the unit and from the zero of
-// "heights". "penumbra", how far below it the ground that decides it hides the whole sun. "sun_share", the
+// "heights". "penumbra", the distance from there down to the height at which the same ground hides the whole sun. "sun_share", the
 // visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
 // "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 //

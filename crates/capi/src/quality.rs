@@ -56,7 +56,7 @@ pub struct RidgelightQuality {
     /// Basis of sphere lights: 1 exact (default), 2 sh.
     pub light_basis: u32,
     /// Largest light that a texel may lose from all sphere lights together, as a share of the brightest light
-    /// that one of them would give to level ground at height 0, [0..1], default 1/65536; below 0: none.
+    /// that one of them can give to its nearest grid point, [0..1], default 1/65536; below 0: none.
     pub light_cutoff: f64,
     /// Number of bounces of light, [0..64].
     pub bounces: u32,

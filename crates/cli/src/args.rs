@@ -38,7 +38,7 @@ use values::{AZIMUTHS, FACTOR, SIDE, bytes, fourier, number};
 pub use values::{SkyArg, SpecularArg, albedo_colour, numbers};
 pub use view::ViewArgs;
 
-/// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
+/// Computes the light on height fields with Vulkan: sky, environment, suns, key lights, sphere lights and bounces, with
 /// shadows from horizons.
 #[derive(Parser)]
 #[command(name = "ridgelight", version = version(), max_term_width = 100)]
@@ -210,7 +210,7 @@ pub enum Command {
     Devices(DevicesArgs),
     /// Measure time against error over many settings; writes a table, a plot and a recommendation
     Trade(TradeArgs),
-    /// Path-traced reference with all bounces and its standard error; slow
+    /// Path-traced reference and its standard error; direct light unless --bounces is given; slow
     Reference(ReferenceArgs),
     /// Bake maps of static ground for engines: horizons, sky view, bent normals, harmonics, scattered light, BRDFs
     Bake(BakeArgs),
@@ -222,7 +222,7 @@ const RENDER_HELP: &str = "\
 Examples:
   ridgelight render dem.tif --sun 315,30 --sky 0.3 -o relief.png
   ridgelight render heights.png --cell 30 --env sky.hdr --bounces 2 --layers lights -o lit.exr
-  ridgelight render dem.tif --sun 250,15 --camera 150,12 -o seen.png
+  ridgelight render dem.tif --sun 250,15 --camera 150,12 -o view.png
   ridgelight render dem.tif --sun 250,15 --max-error 0.01 -o within_a_percent.exr";
 
 #[derive(Args)]
@@ -241,7 +241,7 @@ pub struct RenderArgs {
     pub input: Input,
     /// Output: .png (sRGB), .tif or .exr (linear, layers)
     ///
-    /// All store the settings used as metadata. A .tif is a GeoTIFF and lies where the input lies. A .png of a georeferenced input has its position
+    /// All store the settings used as metadata. A .tif is a GeoTIFF with the georeference of the input. A .png of a georeferenced input has its position
     /// in files beside it (.pgw, .png.aux.xml).
     #[arg(short, long, value_name = "OUT.{png,tif,exr}", help_heading = "Output")]
     pub output: PathBuf,
@@ -268,8 +268,8 @@ pub struct RenderArgs {
     pub layers: Vec<Layer>,
     /// Factor on the radiance of a .png. Default: automatic
     ///
-    /// By default the 99th percentile of the picture's luminance becomes 0.8. It becomes less where no ground has the lightest
-    /// colour of --tint, and a tenth where the only light is a --sun below the horizontal. Then all pictures have the same tone curve:
+    /// By default the 99th percentile of the picture's luminance becomes 0.8. It becomes less if no ground has the lightest
+    /// colour of --tint, and a tenth of that at night: if the only light is a --sun below the horizontal. Then all pictures have the same tone curve:
     /// linear up to 0.8, compressed towards 1 above, sRGB-encoded. Give a factor to pictures that you compare.
     #[arg(
         long,

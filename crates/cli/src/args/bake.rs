@@ -68,7 +68,7 @@ pub struct BakeArgs {
     pub angles: Option<[usize; 2]>,
     /// Curvatures that curved-ellipse is fitted at, outwards and inwards, 1/m, above 0; one number for both
     ///
-    /// Stronger curvatures stay accurate on stronger bends, and are less accurate in between. A curvature that would change
+    /// Ellipses fitted at stronger curvatures are more accurate on strongly curved surfaces, and less accurate on slightly curved ones. A curvature that would change
     /// visibility is refused.
     #[arg(long, value_name = "OUT[,IN]", value_parser = curvatures, allow_hyphen_values = true, help_heading = "Quality", hide_short_help = true)]
     pub curvature: Option<[f64; 2]>,

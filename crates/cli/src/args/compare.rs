@@ -15,7 +15,7 @@ the most. Its quartiles are weighted by the error: a quarter of all error lies i
 
 Exit status: 0 within all bounds, 1 beyond one or failed (each bound is named with what was found), 2 wrong usage.
 
-  ridgelight compare new.exr old.exr --max-rmse 0.001 --max-worst 0.05 --diff off.exr
+  ridgelight compare new.exr old.exr --max-rmse 0.001 --max-worst 0.05 --diff difference.exr
   ridgelight compare new.png old.png --max-flip 0.02
   ridgelight compare new.npy old.npy --horizons --max-p999-deg 2";
 

@@ -23,7 +23,8 @@ Examples:
 
 const SHADOW_HELP: &str = "\
 Bands: sun_share, the visible share of the sun's disc at the ground, 0 to 1, without the cosine. lit_above, the height in \
-metres from which the whole sun is visible. penumbra, how far below it the ground that decides it hides the whole sun. A .png \
+metres from which the whole sun is visible. penumbra, the distance from \
+lit_above down to the height at which the same ground hides the whole sun. A .png \
 has only sun_share. At a height z in between, that ground hides (lit_above - z) / penumbra of the disc's height.
 
 `render --sun` uses exact horizons and is more accurate.
@@ -34,7 +35,7 @@ Examples:
 
 pub const AO_HELP: &str = "\
 The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
-horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. gdaldem has no such map.
+occluders at any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. gdaldem has no such map.
 
 A .png maps 0 to 1 to the values 0 to 255, so mountains are nearly white. For full contrast write a .tif, which QGIS \
 draws from its lowest to its highest value, or convert it as in the example.
@@ -46,7 +47,7 @@ Examples:
 pub const SVF_HELP: &str = "\
 The map `sky-view` of `bake`: flat open ground is 1, a slope of angle a is (1 + cos a)/2. RVT's sky-view factor (Zaksek \
 2011) weights all directions above the horizontal equally, up to 10 pixels away; `visible-sky` of `bake` is the same for \
-horizons of any distance. gdaldem has no such map.
+occluders at any distance. gdaldem has no such map.
 
 A .png maps 0.6375 to 1 to the values 0 to 255, as RVT's 8-bit files do; lower values become 0. A .tif has all values.
 
@@ -59,7 +60,7 @@ const OPENNESS_HELP: &str = "\
 The mean over --azimuths of the zenith angle of the horizon: 90 degrees on flat ground, less in a valley, more on a \
 summit. Azimuths in which a grid point at the edge has no ground are left out.
 
-Differences from RVT: horizons have any distance (RVT: 10 pixels); there are 32 azimuths (RVT: 16).
+Differences from RVT: occluders at any distance count (RVT: 10 pixels); there are 32 azimuths (RVT: 16).
 
 Examples:
   ridgelight openness dem.tif -o openness.tif
@@ -71,7 +72,7 @@ pub struct MapArgs {
     pub input: Input,
     /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
     ///
-    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade is stored as it is,
+    /// A .tif is a GeoTIFF with the georeference of the input. A .png is grey and linear, not sRGB: hillshade is stored as it is,
     /// rounded; of the others a fixed range becomes 0 to 255: shadow and ao 0 to 1, svf 0.6375 to 1, openness 60 to 95 degrees. Voids
     /// are transparent in a .png, else NaN.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]

@@ -14,8 +14,8 @@ use crate::setup::tint::Tint;
 pub struct LightArgs {
     /// Sky: clear, or the radiance of a uniform sky
     ///
-    /// RADIANCE is one number or R,G,B. Level, unoccluded ground of albedo 1 has the same radiance as the sky. clear is the sky around the first --sun (Preetham 1999, turbidity 2.5), as bright as
-    /// that sun demands. Without any light, commands use a sun from the north-west and this sky; `bake`, `bench` and
+    /// RADIANCE is one number or R,G,B. Level, unoccluded ground of albedo 1 has the same radiance as the sky. clear is the sky around the first --sun (Preetham 1999, turbidity 2.5), with the
+    /// brightness that this model gives for that sun. Without any light, commands use a sun from the north-west and this sky; `bake`, `bench` and
     /// --lines exact use a uniform sky of radiance 1.
     #[arg(long, value_name = "RADIANCE|clear", value_parser = sky, allow_negative_numbers = true)]
     pub sky: Option<SkyArg>,

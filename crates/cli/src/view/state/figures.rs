@@ -13,15 +13,15 @@ use crate::view::brush::Action;
 pub const KEYS: [&str; 21] = [
     "V                 from above, from a camera",
     "arrows, drag      move the map, turn the camera",
-    "I J K L           move either; middle drag",
+    "I J K L           move the map or the camera; middle drag",
     "+ - or wheel      nearer, farther     Home    all of it",
-    "Shift+arrows      the sun (there is one from then on); right drag",
+    "Shift+arrows      move the first sun, or add one; right drag",
     "E D  A            brighter, darker; automatic exposure",
-    "C                 without shadows | ours | path-traced reference",
+    "C                 without shadows | Ridgelight | path-traced reference",
     "R                 error against the reference, with C",
     "M  B              method, bounces",
-    "Tab Shift+Tab     all settings: the next, the one before",
-    ", .               less, more of it (azimuths at first)",
+    "Tab Shift+Tab     select the next, the previous setting",
+    ", .               lower, raise the selected setting (first: azimuths)",
     "1                 drag moves the view, as above",
     "2 3 4             drag raises, lowers, erodes",
     "5                 click places or selects a light; drag moves it",
@@ -31,7 +31,7 @@ pub const KEYS: [&str; 21] = [
     "W G               waves, a ridge that travels: on and off",
     "P                 save the picture, as `render` does",
     "S                 save the scene, for `render --scene`",
-    "H    Q Esc        this list, the figures, nothing; end",
+    "H    Q Esc        list and panel, panel only, neither; quit",
 ];
 
 /// Measured values.
