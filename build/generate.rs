@@ -144,6 +144,9 @@ fn add_shader(
         let access = if *written { "writes" } else { "reads" };
         writeln!(table, "    {binding} {access} {name:?} {kind},").unwrap();
     }
+    if let Some([x, y, z]) = found.group_size {
+        writeln!(table, "    [groups of {x} {y} {z}]").unwrap();
+    }
     if found.constants.is_empty() {
         writeln!(table, "    {structure};\n}}\n").unwrap();
         return;

@@ -11,6 +11,7 @@ use super::fail;
 pub(crate) mod op {
     pub const NAME: u32 = 5;
     pub const MEMBER_NAME: u32 = 6;
+    pub const EXECUTION_MODE: u32 = 16;
     pub const TYPE_VOID: u32 = 19;
     pub const TYPE_INT: u32 = 21;
     pub const TYPE_FLOAT: u32 = 22;
@@ -54,6 +55,8 @@ const PUSH_CONSTANT: u32 = 9;
 const DIM_BUFFER: u32 = 5;
 /// Built-in of a workgroup's size.
 const WORKGROUP_SIZE: u32 = 25;
+/// Execution mode: invocations of a workgroup.
+const LOCAL_SIZE: u32 = 17;
 /// Image formats from number 1 on; 0 is unknown.
 const FORMATS: &str = "Rgba32f Rgba16f R32f Rgba8 Rgba8Snorm Rg32f Rg16f R11fG11fB10f R16f Rgba16 \
     Rgb10A2 Rg16 Rg8 R16 R8 Rgba16Snorm Rg16Snorm Rg8Snorm R16Snorm R8Snorm Rgba32i Rgba16i Rgba8i \
@@ -88,6 +91,8 @@ pub(crate) struct Reflection {
     pub push: String,
     pub bindings: BTreeMap<u32, Binding>,
     pub(crate) constants: BTreeMap<u32, Constant>,
+    /// Invocations of a workgroup, unless constants set them.
+    pub group_size: Option<[u32; 3]>,
 }
 
 /// One member of a struct of push constants.
@@ -122,7 +127,7 @@ pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Refle
     }
     let (push, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
-    Reflection { push, bindings, constants: constants(name, &d) }
+    Reflection { push, bindings, constants: constants(name, &d), group_size: d.group_size() }
 }
 
 /// Struct of the push constants, which it adds, and the bindings by number.
@@ -274,11 +279,9 @@ fn add_layouts(name: &str, d: &Declarations<'_>, layouts: &mut Layouts) {
 /// The specialisation constants by number. GLSL does not name those of the workgroup size; they are
 /// `LOCAL_SIZE_X`, `_Y` and `_Z`.
 fn constants(name: &str, d: &Declarations<'_>) -> BTreeMap<u32, Constant> {
-    let mut composites = d.all(op::SPEC_CONSTANT_COMPOSITE);
-    let group_size =
-        composites.find(|(target, _)| d.of(*target, decoration::BUILT_IN) == Some(WORKGROUP_SIZE));
+    let group_size = d.specialised_group_size();
     let axis_of = |target: u32| {
-        let (_, size) = group_size?;
+        let size = group_size?;
         let axis = size.operands.iter().position(|part| *part == target)?;
         Some(["LOCAL_SIZE_X", "LOCAL_SIZE_Y", "LOCAL_SIZE_Z"][axis].to_owned())
     };
@@ -332,6 +335,8 @@ struct Declarations<'m> {
     decorations: HashMap<(u32, Option<u32>, u32), u32>,
     /// Types, constants and variables by id.
     values: BTreeMap<u32, Value<'m>>,
+    /// `LocalSize` of the entry point.
+    local_size: Option<[u32; 3]>,
 }
 
 /// A type, a constant or a variable.
@@ -349,6 +354,7 @@ impl<'m> Declarations<'m> {
     fn read(words: &'m [u32]) -> Option<Self> {
         let (mut names, mut decorations) = (HashMap::new(), HashMap::new());
         let (mut shader, mut values) = (String::new(), BTreeMap::new());
+        let mut local_size = None;
         // After the header.
         let mut rest = words.get(5..)?;
         let (mut is_declared, mut last) = (false, 0);
@@ -370,6 +376,9 @@ impl<'m> Declarations<'m> {
                     names.insert((*target, Some(*member)), string(text));
                 }
                 (op::MODULE_PROCESSED, text) => shader = string(text),
+                (op::EXECUTION_MODE, [_, LOCAL_SIZE, size @ ..]) => {
+                    local_size = size.try_into().ok();
+                }
                 (op::DECORATE, [target, what, operands @ ..]) => {
                     decorations.insert((*target, None, *what), first_of(operands));
                 }
@@ -388,7 +397,20 @@ impl<'m> Declarations<'m> {
                 _ => {}
             }
         }
-        (last == op::FUNCTION_END).then_some(Self { shader, names, decorations, values })
+        let found = Self { shader, names, decorations, values, local_size };
+        (last == op::FUNCTION_END).then_some(found)
+    }
+
+    /// The constant that sets the invocations of a workgroup, if they are specialised.
+    fn specialised_group_size(&self) -> Option<&Value<'m>> {
+        let mut composites = self.all(op::SPEC_CONSTANT_COMPOSITE);
+        let is_size = |target| self.of(target, decoration::BUILT_IN) == Some(WORKGROUP_SIZE);
+        composites.find(|(target, _)| is_size(*target)).map(|(_, value)| value)
+    }
+
+    /// Invocations of a workgroup; `None` where they are specialised, and in graphics shaders.
+    fn group_size(&self) -> Option<[u32; 3]> {
+        self.local_size.filter(|_| self.specialised_group_size().is_none())
     }
 
     /// All values of an opcode, with their ids.

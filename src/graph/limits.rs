@@ -1,5 +1,8 @@
 use crate::{Error, Result};
 
+/// Largest number of loop iterations of an invocation: llvmpipe ends all its loops together after 65,535.
+pub(crate) const MOST_TURNS: u32 = 60_000;
+
 /// Limits of a device, and the memory budget of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {

@@ -9,7 +9,7 @@ mod resource;
 pub mod shaders;
 
 pub(crate) use builder::{Builder, Part};
-pub(crate) use limits::{GPU_LOOKUPS, bytes_text};
+pub(crate) use limits::{GPU_LOOKUPS, MOST_TURNS, bytes_text};
 pub use limits::{Limits, SweepForm};
 pub use pass::{Pass, ResourceId};
 pub use place_barriers::missing_barriers;

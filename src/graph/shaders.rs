@@ -112,6 +112,7 @@ macro_rules! shader {
         $(#[$doc:meta])*
         $constant:ident: $name:literal, push $push:ty, words $first:literal $count:literal,
         $($binding:literal $access:ident $variable:literal $kind:ident $({ $($flag:tt)* })?,)*
+        $([groups of $x:literal $y:literal $z:literal])?
         $shape:ident $({ $($id:literal $field:ident: $type:ty = $default:literal,)* })? $(;)?
     ) => {
         $(#[$doc])*
@@ -141,6 +142,17 @@ macro_rules! shader {
         impl Specialise for $shape {
             type Push = $push;
         }
+
+        $(
+            impl $shape {
+                /// Workgroups for so many invocations along each axis.
+                #[allow(dead_code, reason = "some passes count workgroups, not invocations")]
+                pub(crate) fn groups(invocations: [u32; 3]) -> [u32; 3] {
+                    let [across, down, deep] = invocations;
+                    [across.div_ceil($x), down.div_ceil($y), deep.div_ceil($z)]
+                }
+            }
+        )?
 
         impl From<$shape> for Specialised {
             fn from(_of: $shape) -> Self {

@@ -8,6 +8,8 @@ pub(crate) mod device;
 pub(crate) mod direct;
 pub(crate) mod edit;
 pub(crate) mod horizon;
+#[cfg(test)]
+mod numbers;
 pub(crate) mod rays;
 pub(crate) mod reference;
 pub(crate) mod sh;

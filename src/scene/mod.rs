@@ -42,7 +42,7 @@ mod scatter;
 mod settings;
 mod surface;
 mod tone;
-mod visible;
+pub(crate) mod visible;
 
 pub use bend::{Fans, MAX_TURN_RAD, REACH_CELLS, bent_direction, bent_direction_within};
 pub(crate) use camera::corners;

@@ -31,9 +31,9 @@ pub enum VisiblePoint {
 }
 
 /// Marks: words, or halves of words, whose upper bits are all 1, as in `points.glsl`.
-const SKY: u32 = 0xffff_ffff;
-const GROUND: u32 = 0xffff_fffe;
-const LOST: u32 = 0xffff_fffd;
+pub(crate) const SKY: u32 = 0xffff_ffff;
+pub(crate) const GROUND: u32 = 0xffff_fffe;
+pub(crate) const LOST: u32 = 0xffff_fffd;
 
 /// Why a ray was lost on the device.
 pub const LOST_RAY: &str = "a ray exceeded the step limit: the relief is too many cells high; use lower heights or larger cells";

@@ -3,7 +3,7 @@ use std::ops::Range;
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Albedo, Curvature, HeightField, PhongSpecular, Specular, VisiblePoints};
 
-/// Where the light of visible points comes from; numbered as in the shader.
+/// Where the light of visible points comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     None,
@@ -82,7 +82,7 @@ pub(crate) fn plan(
         },
         &part,
         why,
-        [cols.div_ceil(8), rows.div_ceil(8), if sums { views } else { count }],
+        shaders::ScatterGather::groups([cols, rows, if sums { views } else { count }]),
         &shaders::ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,
@@ -120,7 +120,7 @@ pub(crate) fn plan_nothing(
         shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
         "nothing",
         "no light: nothing is scattered",
-        [cols.div_ceil(8), rows.div_ceil(8), views],
+        shaders::ScatterGather::groups([cols, rows, views]),
         &shaders::ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,

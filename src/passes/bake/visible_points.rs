@@ -31,7 +31,7 @@ pub(crate) fn plan(
         },
         part,
         "the visible point of each grid point in each direction",
-        [cols.div_ceil(8), rows.div_ceil(8), count],
+        shaders::VisiblePoints::groups([cols, rows, count]),
         &shaders::VisiblePointsPush {
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,

@@ -1,9 +1,8 @@
-use crate::graph::{Builder, Part, ResourceId, shaders};
+use crate::graph::{Builder, MOST_TURNS, Part, ResourceId, shaders};
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::pyramid::Pyramid;
 use crate::passes::pyramid_march;
-use crate::passes::sphere_shade::MOST_TURNS;
 use crate::passes::sweep::warm_up;
 use crate::scene::{HeightField, Levels, Receiver};
 
@@ -133,7 +132,7 @@ pub(crate) fn plan(
                     Receiver::Cosine => "in Legendre coefficients and three bands of the cosine",
                 }
             ),
-            [across.div_ceil(8), height.div_ceil(8), 1],
+            shaders::BounceGather::groups([across, height, 1]),
             &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + march_samples * (4 + 16)),

@@ -1,8 +1,7 @@
-use crate::graph::{Builder, Part, shaders};
+use crate::graph::{Builder, MOST_TURNS, Part, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
-use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Scene;
 
 /// Gathers bounced light at every grid point, or at every node, by brute force.
@@ -35,7 +34,7 @@ pub(crate) fn plan(
             },
             &part.label(&bounce.name, "azimuths", &(0..azimuths), along),
             format!("{}, every visible interval along {count} azimuths", bounce.why),
-            [across.div_ceil(8), height.div_ceil(8), 1],
+            shaders::BounceMarch::groups([across, height, 1]),
             &shaders::BounceMarchPush {
                 land: shaders::LandPush::of(field, &blocks.levels),
                 azimuths: azimuths as i32,

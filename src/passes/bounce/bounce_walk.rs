@@ -1,11 +1,10 @@
-use crate::graph::{Axis, Builder, ResourceId, shaders};
+use crate::graph::{Axis, Builder, MOST_TURNS, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::bounce_ground::BounceGround;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::line_blocks::LineBlocks;
 use crate::passes::nodes::Nodes;
-use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Border;
 use std::ops::Range;
 
@@ -25,9 +24,9 @@ pub(crate) struct Swept {
     pub sky_share: Option<ResourceId>,
 }
 
-/// Which nodes a dispatch walks from; numbered as in the shader.
+/// Which nodes a dispatch walks from.
 #[derive(Clone, Copy, PartialEq)]
-enum From {
+pub(crate) enum From {
     All,
     /// The nodes of later bounces. They write the visibility cache.
     Kept,
@@ -102,7 +101,7 @@ pub(crate) fn plan(
             },
             &format!("{part}{which}"),
             format!("{}, visible ground along {count} azimuths", bounce.why),
-            [across.div_ceil(8), along.div_ceil(8), 1],
+            shaders::BounceWalk::groups([*across, *along, 1]),
             &shaders::BounceWalkPush {
                 cols: cols as i32,
                 rows: rows as i32,

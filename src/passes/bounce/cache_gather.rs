@@ -26,7 +26,7 @@ pub(crate) fn plan(
         },
         &bounce.name,
         format!("{}, by the visibility cache of {count} azimuths", bounce.why),
-        [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
+        shaders::CacheGather::groups([nodes_x, nodes_y, 1]),
         &shaders::CacheGatherPush {
             cols: size[0] as i32,
             rows: size[1] as i32,

@@ -15,7 +15,7 @@ pub(crate) fn plan(
         shaders::ShadeExpand { periodic: pyramid.periodic, grey: bounce.grey },
         &bounce.name,
         format!("{} levels of radiance at every texel, by B-splines", pyramid.levels()),
-        [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
+        shaders::ShadeExpand::groups([cols, rows, pyramid.levels()]),
         &shaders::ShadeExpandPush {
             cols: cols as i32,
             rows: rows as i32,

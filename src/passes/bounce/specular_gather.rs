@@ -1,8 +1,7 @@
-use crate::graph::{Builder, ResourceId, shaders};
+use crate::graph::{Builder, MOST_TURNS, ResourceId, shaders};
 use crate::passes::bounce_gather::Pyramids;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::bounces::Bounce;
-use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::{HeightField, Levels};
 
 /// Gathers bounced light from pyramids at every texel, for diffuse and for specular reflection.
@@ -73,7 +72,7 @@ pub(crate) fn plan(
                     "radiance towards the zenith"
                 }
             ),
-            [cols.div_ceil(8), height.div_ceil(8), 1],
+            shaders::SpecularGather::groups([cols, height, 1]),
             &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),

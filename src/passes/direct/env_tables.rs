@@ -16,7 +16,7 @@ pub(crate) fn plan(
         shaders::EnvTables {},
         "",
         format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
-        [1, count.div_ceil(4), 1],
+        shaders::EnvTables::groups([3, count, 1]),
         &shaders::EnvTablesPush {
             height: environment.height() as i32,
             rows: rows_kept as i32,

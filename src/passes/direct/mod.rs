@@ -21,6 +21,7 @@ pub(crate) mod sphere_sh;
 pub(crate) mod sphere_sh_shade;
 /// Sphere lights: each texel marches slices of the light over the surface, no farther than the light.
 pub(crate) mod sphere_shade;
+pub(crate) mod sphere_shading;
 pub(crate) mod spheres;
 /// Light of suns and key lights through the horizons.
 pub(crate) mod sun_shade;

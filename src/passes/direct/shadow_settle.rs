@@ -1,8 +1,7 @@
-use crate::graph::{Builder, ResourceId, shaders};
+use crate::graph::{Builder, MOST_TURNS, ResourceId, shaders};
 use crate::passes::azimuths::Shape;
 use crate::passes::batch::Batch;
 use crate::passes::shadows::{Shadows, Walked};
-use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::{Border, HeightField};
 
 /// Invocations of a workgroup: each is one azimuth of one texel.

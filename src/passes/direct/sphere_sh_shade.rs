@@ -1,15 +1,14 @@
 use std::ops::Range;
 
-use crate::graph::{Builder, Part, Rectangle, ResourceId, shaders};
+use crate::graph::{Builder, MOST_TURNS, Part, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
+use crate::passes::sphere_shading::{SphereShading, beyond, place_of, rows_of};
 use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};
 use crate::{Error, Result};
 
-use crate::passes::sphere_shade::{MOST_TURNS, SphereShading, beyond, place_of, rows_of};
-
 /// As in `within.glsl`.
-const WITHIN_CELLS: u32 = 8192;
+pub(crate) const WITHIN_CELLS: u32 = 8192;
 
 /// Light of one sphere light.
 pub(crate) fn plan(
@@ -147,7 +146,7 @@ fn dispatch(
                 "the sphere light times the visibility across and up to it"
             }
         },
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        shaders::SphereShShade::groups([cols, rows, 1]),
         &shaders::SphereShShadePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],

@@ -1,49 +1,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
-use crate::graph::{Builder, Part, Rectangle, ResourceId, shaders};
-use crate::passes::PhongSource;
+use crate::graph::{Builder, MOST_TURNS, Part, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
-use crate::passes::spheres::texels_within;
-use crate::scene::{HeightField, Scene, SphereLight};
-
-/// llvmpipe ends all loops of an invocation together after 65,535 iterations.
-pub(crate) const MOST_TURNS: u32 = 60_000;
-
-/// How and where a sphere light is shaded.
-pub(crate) struct SphereShading {
-    /// What the plan prints.
-    pub why: &'static str,
-    /// Slices across the light.
-    pub slices: u32,
-    /// Grid points that it may reach, and their largest distance.
-    pub rectangle: Rectangle,
-    pub reach_m: f32,
-    /// Whether the sum begins with it.
-    pub begins: bool,
-    pub specular: Option<SphereSpecular>,
-}
-
-/// Phong specular of a sphere light.
-#[derive(Clone, Copy)]
-pub(crate) struct SphereSpecular {
-    pub phong: PhongSource,
-    /// Least number of slices around a texel within the sphere, from the narrowest lobe.
-    pub slices_around: u32,
-    /// The eye over the field's base; the last number is 0 for a view from straight above.
-    pub eye_m: [f32; 4],
-    pub specular_sum: ResourceId,
-    /// Whether the sum begins with it.
-    pub begins: bool,
-}
-
-impl SphereShading {
-    /// Slices where the sphere is narrow from a texel, and where it surrounds the texel.
-    fn counts(&self, light: &SphereLight, field: &HeightField) -> [u32; 2] {
-        let [narrow, around] = light.slices(self.slices, field.cell_m());
-        [narrow, self.specular.map_or(around, |specular| around.max(specular.slices_around))]
-    }
-}
+use crate::passes::sphere_shading::{SphereShading, beyond, place_of, rows_of, texels_within};
+use crate::scene::{Scene, SphereLight};
 
 /// Light of one sphere light.
 pub(crate) fn plan(
@@ -92,22 +53,6 @@ pub(crate) fn plan(
     }
 }
 
-/// A rectangle south of the field, where shaders write nothing. It keeps a pass that has no work.
-pub(crate) fn beyond([_, rows]: [u32; 2]) -> Rectangle {
-    Rectangle { col: 0, row: rows, cols: 1, rows: 1 }
-}
-
-/// Some rows of a rectangle. They count from its first row, so that a part is whole workgroups. Counted from the field's first
-/// row, a workgroup could reach into the next part, and light there would be added twice.
-pub(crate) fn rows_of(lit: Rectangle, rows: &Range<u32>) -> Option<Rectangle> {
-    let end = rows.end.min(lit.rows);
-    (rows.start < end).then(|| Rectangle {
-        row: lit.row + rows.start,
-        rows: end - rows.start,
-        ..lit
-    })
-}
-
 /// The intersection, if there is any.
 fn common(a: Rectangle, b: Rectangle) -> Option<Rectangle> {
     let along = |[a, n]: [u32; 2], [b, m]: [u32; 2]| {
@@ -117,16 +62,6 @@ fn common(a: Rectangle, b: Rectangle) -> Option<Rectangle> {
     let [col, cols] = along([a.col, a.cols], [b.col, b.cols])?;
     let [row, rows] = along([a.row, a.rows], [b.row, b.rows])?;
     Some(Rectangle { col, row, cols, rows })
-}
-
-/// The light's centre: whole cells east of the first column and south of the first row, and the rest of a cell.
-pub(crate) fn place_of(field: &HeightField, light: &SphereLight) -> ([i32; 2], [f32; 2]) {
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, _] = light.position_m;
-    let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
-    // Beyond this a whole cell is less than a rounding of the distance.
-    let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
-    (base.map(|b| b as i32), [0, 1].map(|i| (place[i] - base[i]) as f32))
 }
 
 #[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
@@ -167,7 +102,7 @@ fn dispatch(
         },
         part,
         shading.why,
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        shaders::SphereShade::groups([cols, rows, 1]),
         &shaders::SphereShadePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],

@@ -4,7 +4,8 @@ use crate::graph::{Builder, Rectangle, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sphere_sh_shade;
-use crate::passes::sphere_shade::{self, SphereShading, SphereSpecular};
+use crate::passes::sphere_shade;
+use crate::passes::sphere_shading::{SphereShading, SphereSpecular, texels_within};
 use crate::scene::{HeightField, NearLight, Scene, SphereLight};
 use crate::{Error, Result};
 
@@ -173,25 +174,6 @@ fn in_part(field: &HeightField, light: &SphereLight, part: [usize; 2]) -> f64 {
     let east = beside(x, cell_x, field.cols(), part[1]);
     let north = beside(y, cell_y, field.rows(), part[0]);
     light.most_at(east.hypot(north))
-}
-
-/// The grid points within `reach` of a sphere light's centre in plan, if any.
-pub(crate) fn texels_within(
-    field: &HeightField,
-    light: &SphereLight,
-    reach: f64,
-) -> Option<Rectangle> {
-    let within = |place: f64, reach: f64, count: usize| {
-        let last = count as f64 - 1.0;
-        let [low, high] = [(place - reach).ceil().max(0.0), (place + reach).floor().min(last)];
-        (low <= high).then_some((low as u32, (high - low) as u32 + 1))
-    };
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, _] = light.position_m;
-    let (col, cols) = within(x / cell_x, reach / cell_x, field.cols())?;
-    let from_north = (field.rows() - 1) as f64 - y / cell_y;
-    let (row, rows) = within(from_north, reach / cell_y, field.rows())?;
-    Some(Rectangle { col, row, cols, rows })
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub(crate) fn plan(
         },
         axis.name(),
         "so that one fetch reads four neighbouring lanes",
-        [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
+        shaders::HeightTranspose::groups([quads, axis.steps, 1]),
         &shaders::HeightTransposePush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

@@ -37,7 +37,7 @@ pub struct Level {
 }
 
 /// Most workgroups in a row of a dispatch; devices have at least 65,535.
-const GROUPS_ACROSS: u32 = 1024;
+pub(crate) const GROUPS_ACROSS: u32 = 1024;
 
 /// Levels that one dispatch makes.
 pub(crate) struct Octave<'a> {
@@ -60,7 +60,9 @@ impl<'a> Octave<'a> {
         for (first, number) in first_group.iter_mut().zip(numbers.clone()) {
             *first = groups;
             let [cols, rows] = pyramid.level(number).size;
-            groups += (cols.div_ceil(8) * rows.div_ceil(8)) as i32;
+            // Reductions of shades have groups of the same size.
+            let [across, down, _] = shaders::HeightReduce::groups([cols, rows, 1]);
+            groups += (across * down) as i32;
         }
         let push = shaders::ReducePush {
             level: *numbers.start() as i32,

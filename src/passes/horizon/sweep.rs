@@ -6,7 +6,7 @@ use crate::passes::pyramid::Pyramid;
 use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
 use crate::{Error, Result};
 
-/// Where a line's hull is stored; numbered as in the shader.
+/// Where a line's hull is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HullStorage {
     /// Private memory of the invocation.
@@ -261,6 +261,9 @@ fn form_of(
 }
 
 impl Sweep {
+    /// The shaders' SLOPE_FORMAT, and LATTICE where slopes are stored: of f32 and of f16.
+    pub(crate) const SLOPE_FORMATS: [u32; 2] = [1, 2];
+
     /// The form for a quality and a device.
     ///
     /// # Errors
@@ -328,8 +331,8 @@ impl Sweep {
                 0
             }
             (false, _) => 0,
-            (true, Precision::F16) => 2,
-            (true, _) => 1,
+            (true, Precision::F16) => Sweep::SLOPE_FORMATS[1],
+            (true, _) => Sweep::SLOPE_FORMATS[0],
         };
         let packed = quality.precision == Precision::Packed;
         if packed {
@@ -489,7 +492,7 @@ impl Sweep {
         match self {
             Sweep::Lines(lines) => lines.slope_format,
             Sweep::Crossings => 0,
-            _ => 1,
+            _ => Self::SLOPE_FORMATS[0],
         }
     }
 

@@ -1,6 +1,6 @@
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::{height_bounds, height_cells};
-use crate::scene::{Border, HeightField};
+use crate::scene::{Border, HeightField, REACH_CELLS};
 
 /// Blocks of 4 by 4 cells, of 4 by 4 such blocks and so on, over a field.
 #[derive(Clone, Copy)]
@@ -137,6 +137,3 @@ pub(crate) enum Source {
         tilt: [f32; 2],
     },
 }
-
-/// As in `walk.glsl`.
-pub(crate) const REACH_CELLS: u32 = 16384;

@@ -1,6 +1,11 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::{BlockLevels, Source};
 
+/// What a level is made from: heights, cells, or the blocks of the level below.
+pub(crate) const FROM_HEIGHTS: u32 = 0;
+pub(crate) const FROM_CELLS: u32 = 1;
+pub(crate) const FROM_BLOCKS: u32 = 2;
+
 /// The maximum height of each block of 4^level by 4^level cells.
 pub(crate) fn plan(
     builder: &mut Builder,
@@ -14,21 +19,21 @@ pub(crate) fn plan(
     let blocks = u64::from(across) * u64::from(down);
     let mut bound = vec![("maxima", maxima)];
     let (kind, read) = match source {
-        _ if level > 1 => (2, 4 * 16),
+        _ if level > 1 => (FROM_BLOCKS, 4 * 16),
         Source::Heights { heights, .. } => {
             bound.push(("heights", heights));
-            (0, 4 * 25)
+            (FROM_HEIGHTS, 4 * 25)
         }
         Source::Cells(cells) => {
             bound.push(("cells", cells));
-            (1, 16 * 16)
+            (FROM_CELLS, 16 * 16)
         }
     };
     builder.pass(
         shaders::HeightBounds { source: kind },
         format!("{part} level {level}").trim(),
         "so that rays above a block skip it",
-        [across.div_ceil(8), down.div_ceil(8), 1],
+        shaders::HeightBounds::groups([across, down, 1]),
         &shaders::HeightBoundsPush {
             cells_x: cells_x as i32,
             cells_y: cells_y as i32,

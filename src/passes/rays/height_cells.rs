@@ -28,7 +28,7 @@ pub(crate) fn plan(
             Some(_) => "so that one fetch reads a cell; shading reads the normals of texels",
             None => "shading reads the normals of texels",
         },
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        shaders::HeightCells::groups([cols, rows, 1]),
         &shaders::HeightCellsPush {
             cols: cols as i32,
             rows: rows as i32,

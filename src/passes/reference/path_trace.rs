@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::{Builder, ResourceId, shaders};
+use crate::graph::{Builder, MOST_TURNS, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::scene::{Albedo, Normals, PhongSpecular, Scene, Specular};
 
@@ -10,9 +10,6 @@ const SET_BITS: u32 = 6;
 
 /// Paths per texel that one run of the pass adds.
 pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
-
-/// llvmpipe ends all loops of an invocation together after 65,535 iterations.
-const MOST_TURNS: u32 = 60_000;
 
 /// Lights per part, where there are as many; each part adds one scattered ray.
 const LIGHTS_OF_A_PART: u32 = 16;
@@ -114,7 +111,7 @@ pub(crate) fn plan(
                 "{BATCH_PATHS} more paths from each of {count} texels: bounced light of up to {bounces} bounces"
             ),
         },
-        [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
+        shaders::PathTrace::groups([cols, band.end - band.start, 1]),
         &shaders::PathTracePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,

@@ -20,7 +20,7 @@ pub(crate) fn plan(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",
             environment.height()
         ),
-        [kept.div_ceil(8), azimuths, 1],
+        shaders::EnvWedges::groups([kept, azimuths, 1]),
         &shaders::EnvWedgesPush {
             width: width as i32,
             rows: kept as i32,

@@ -48,7 +48,7 @@ impl MirrorMap {
             shaders::MirrorMap {},
             part,
             why,
-            [self.stored.div_ceil(8), self.height.div_ceil(8), 1],
+            shaders::MirrorMap::groups([self.stored, self.height, 1]),
             &shaders::MirrorMapPush {
                 columns: self.columns as i32,
                 height: self.height as i32,

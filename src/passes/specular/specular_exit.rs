@@ -72,7 +72,7 @@ pub(crate) fn plan(
         },
         &outgoing.name,
         why,
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        shaders::SpecularExit::groups([cols, rows, 1]),
         &shaders::SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -99,7 +99,7 @@ impl SpecularTables {
                 "light below each of {} elevations in a lobe of exponent {}",
                 self.nodes, self.exponent
             ),
-            [self.peaks.div_ceil(4 * 8), self.layers.div_ceil(8), 1],
+            shaders::SpecularTables::groups([self.peaks.div_ceil(4), self.layers, 1]),
             &shaders::SpecularTablesPush {
                 height: height as i32,
                 rows: kept as i32,

@@ -15,10 +15,6 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn groups(self) -> [u32; 3] {
-        [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1]
-    }
-
     pub(super) fn texels(self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }

@@ -1,9 +1,9 @@
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
-use crate::passes::blocks::{Blocks, REACH_CELLS};
+use crate::passes::blocks::Blocks;
 use crate::passes::visible_points as pass;
 use crate::plan::Plan;
-use crate::scene::{Border, Directions, HeightField, VisiblePoints};
+use crate::scene::{Border, Directions, HeightField, REACH_CELLS, VisiblePoints};
 use crate::{Error, Result};
 use std::ops::Range;
 

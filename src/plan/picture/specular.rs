@@ -6,7 +6,7 @@ use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
-use crate::passes::sphere_shade::SphereSpecular;
+use crate::passes::sphere_shading::SphereSpecular;
 use crate::passes::sun_shade::KeySpecular;
 use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
 use crate::scene::{
