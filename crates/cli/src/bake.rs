@@ -25,7 +25,7 @@ use crate::setup::{self, Outcome};
 use crate::{horizon, idle, maps};
 use estimate::Estimate;
 pub use folder::check_new;
-use folder::{check_folder, check_memory, parent, remove_old, take_manifest};
+use folder::{check_folder, check_memory, remove_old, take_manifest};
 use job::{HORIZONS, Job, first};
 pub use kinds::{Kind, Normals};
 use kinds::{Map, Source};
@@ -83,10 +83,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     if args.plan {
         return say_plan(args, &job);
     }
-    let on_disk = if args.output.is_dir() { args.output.as_path() } else { parent(&args.output) };
-    let room: Vec<_> = files.iter().map(|(name, bytes)| (on_disk.join(name), *bytes)).collect();
-    let room: Vec<_> = room.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
-    files::check_room(&room)?;
+    let room = paths.iter().zip(&files).map(|(path, (_, bytes))| (path.as_path(), *bytes));
+    files::check_room(&room.collect::<Vec<_>>())?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     job.limits = limits;
     job.check_layers(&limits)?;

@@ -214,19 +214,19 @@ pub fn scene(
              corner"
         ));
     }
-    let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint));
-    let albedo = match (tint, albedo_colour(surface.albedo())) {
-        (Some(tint), _) => tint,
-        (None, Some(colour)) => Albedo::Constant(colour),
-        (None, None) => {
-            files::read_albedo(Path::new(surface.albedo()), field.rows(), field.cols())?
-        }
-    };
     let specular = match &surface.specular {
         None => None,
         Some(SpecularArg::Constant(one)) => Some(Specular::Constant(*one)),
         Some(SpecularArg::File(path)) => {
             Some(files::read_specular(path, field.rows(), field.cols())?)
+        }
+    };
+    let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint, specular.as_ref()));
+    let albedo = match (tint, albedo_colour(surface.albedo())) {
+        (Some(tint), _) => tint,
+        (None, Some(colour)) => Albedo::Constant(colour),
+        (None, None) => {
+            files::read_albedo(Path::new(surface.albedo()), field.rows(), field.cols())?
         }
     };
     Ok(Scene {
@@ -240,7 +240,7 @@ pub fn scene(
 pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
     let tint = tint_of(surface);
     if surface.tint.is_none()
-        && let Some(albedo) = tint::albedo(&scene.field, tint)
+        && let Some(albedo) = tint::albedo(&scene.field, tint, scene.surface.specular.as_ref())
     {
         scene.surface.albedo = albedo;
     }
@@ -476,7 +476,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
             .or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
     };
     let mut taken: Vec<(&str, Option<PathBuf>)> =
-        inputs.iter().map(|path| ("the input", place(path))).collect();
+        inputs.iter().map(|path| ("an input", place(path))).collect();
     for (flag, path) in outputs {
         let Some(path) = path else { continue };
         let here = place(path);

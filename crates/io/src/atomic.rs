@@ -255,7 +255,11 @@ pub fn check_room(files: &[(&Path, u64)]) -> Result<()> {
 /// The disk of `path`, and its bytes free to this user.
 #[cfg(unix)]
 fn free(path: &Path) -> Option<(u64, u64)> {
-    let folder = folder_of(path);
+    // A folder that is made later has the disk of the one that will hold it.
+    let mut folder = folder_of(path);
+    while !folder.exists() {
+        folder = folder_of(folder);
+    }
     let about = rustix::fs::statvfs(folder).ok()?;
     let id = std::os::unix::fs::MetadataExt::dev(&std::fs::metadata(folder).ok()?);
     Some((id, about.f_bavail.saturating_mul(about.f_frsize)))

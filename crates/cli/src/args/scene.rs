@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use ridgelight::scene::Lights;
 
-use super::values::{SkyArg, SpecularArg, bbox, cell, number, sky, specular};
+use super::values::{SkyArg, SpecularArg, angle, bbox, cell, number, sky, specular};
 use crate::setup::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
@@ -31,7 +31,7 @@ pub struct LightArgs {
         long,
         value_name = "DEG",
         default_value_t = 0.0,
-        value_parser = number::<f64>("an angle, degrees"),
+        value_parser = angle,
         allow_negative_numbers = true,
         hide_short_help = true,
         requires = "env"
@@ -112,7 +112,7 @@ pub struct SurfaceArgs {
     /// Albedo by height or slope: none, elevation, slope or land
     ///
     /// Default land for a .png and the window, else none. Colours span the heights from the 2nd to the 98th percentile, and
-    /// slopes from 0 to 60 degrees.
+    /// slopes from 0 to 60 degrees. All are darker where the scale of --specular leaves less.
     #[arg(long, conflicts_with = "albedo", hide_possible_values = true, help_heading = "Surface")]
     pub tint: Option<Tint>,
     /// Phong specular: exponent 0 to 10000, scale 0 to 1

@@ -22,6 +22,12 @@ pub fn number<T: FromStr + 'static>(
     move |text| text.parse().map_err(|_| expected.to_owned())
 }
 
+/// An angle in degrees, within what the library accepts: a million radians.
+pub fn angle(text: &str) -> Result<f64, String> {
+    let within = |degrees: &f64| degrees.abs() <= 5.7e7;
+    text.parse().ok().filter(within).ok_or_else(|| "an angle within ±5.7e7 degrees".to_owned())
+}
+
 /// A number of things, at least one.
 pub fn count(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| *n > 0).ok_or_else(|| "a whole number, 1 or more".to_owned())

@@ -101,7 +101,7 @@ pub fn check_memory(bytes: u64) -> Result<()> {
     })
 }
 
-pub fn parent(path: &Path) -> &Path {
+fn parent(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

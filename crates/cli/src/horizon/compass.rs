@@ -14,7 +14,7 @@ pub struct Compass {
 /// Compass degrees of a library azimuth, which is in radians counter-clockwise from east.
 fn compass_deg(azimuth_rad: f64) -> f64 {
     // Rounded first: 90° less the degrees of π/2 must not be -1e-14, which is almost 360.
-    let degrees = ((90.0 - azimuth_rad.to_degrees()) * 1e9).round() * 1e-9;
+    let degrees = ((90.0 - azimuth_rad.to_degrees()) * 1e9).round() / 1e9;
     let turned = degrees.rem_euclid(360.0);
     if turned < 360.0 { turned } else { 0.0 }
 }

@@ -58,6 +58,7 @@ pub fn check_layers(args: &RenderArgs) -> Result<()> {
 /// The requested camera, checked as far as possible without a device. `for_screen`: a picture of codes, with a plinth.
 pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<Option<CameraView>> {
     let Some(at) = args.eye.camera else { return Ok(None) };
+    check_cells(&scene.field)?;
     let on_plinth = on_plinth(&args.eye, at, &scene.field)?;
     let is_drawn = for_screen || args.eye.plinth.is_some();
     let options = ViewOptions {
@@ -71,6 +72,26 @@ pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<O
     let framed = on_plinth.as_ref().map(|(_, framed)| framed);
     let camera = placed(&args.eye, at, (&scene.field, framed), options.aspect())?;
     Ok(Some(CameraView { camera, options }))
+}
+
+/// Refuses a field of which a camera shows nothing: without a cell whose four grid points have heights.
+fn check_cells(field: &HeightField) -> Result<()> {
+    let (rows, cols) = (field.rows(), field.cols());
+    let is_known = |i: usize| !field.voids().is_some_and(|voids| voids[i]);
+    let is_shown = |i: &usize| {
+        let (row, col) = (i / cols, i % cols);
+        let has_cell = row + 1 < rows && col + 1 < cols;
+        has_cell && [0, 1, cols, cols + 1].iter().all(|next| is_known(i + next))
+    };
+    if (0..rows * cols).any(|i| is_shown(&i)) {
+        return Ok(());
+    }
+    let (voids, expected) = match field.voids() {
+        None => ("", "2 × 2 or more"),
+        Some(_) => (" with voids", "a cell whose four corners have heights"),
+    };
+    let found = format!("{cols} × {rows} grid points{voids}");
+    Err(Error::setting("a field before a camera", found, expected))
 }
 
 /// Whether a place, metres east and north of the south-west corner, lies on the field or at most its own size beside it.
@@ -140,7 +161,24 @@ fn placed(
         }
     }
     camera.check()?;
+    warn_below(&camera, field);
     Ok(camera)
+}
+
+/// Warns of an eye below the ground, which sees the ground from inside.
+fn warn_below(camera: &Camera, field: &HeightField) {
+    let [east_m, north_m, up_m] = camera.eye_m().to_array();
+    let [width, height] = [
+        field.cell_m()[0] * (field.cols() - 1) as f64,
+        field.cell_m()[1] * (field.rows() - 1) as f64,
+    ];
+    let is_over = (0.0..=width).contains(&east_m) && (0.0..=height).contains(&north_m);
+    let below_m = nearest_m(field, [east_m, north_m]) - up_m;
+    if matches!(camera.lens, Lens::Perspective { .. }) && is_over && below_m > 0.0 {
+        crate::setup::warning(&format!(
+            "the camera is {below_m:.0} m below the ground: raise it, or give a larger distance or --look-at"
+        ));
+    }
 }
 
 /// Height of a plinth's base, `share` of the field's longer side below the lowest height, and a field whose box is that of

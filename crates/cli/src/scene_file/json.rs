@@ -48,8 +48,9 @@ impl<'t> Found<'t> {
     pub fn root(path: &'t Path, text: &'t str) -> Result<Self> {
         let raw = serde_json::from_str(text).map_err(|error| {
             let place = format!("line {}, column {}", error.line(), error.column());
-            let found = error.to_string();
-            Error::file(path, place, found.split(" at line").next().unwrap_or_default(), "JSON")
+            let error = error.to_string();
+            let reason = error.split(" at line").next().unwrap_or_default();
+            Error::file(path, place, format!("other text ({reason})"), "JSON")
         })?;
         Ok(Self { path, text, raw, key: String::new() })
     }

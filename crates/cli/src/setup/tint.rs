@@ -4,7 +4,7 @@
 //! end to the other, so equal steps look equal, and the order survives every kind of colour blindness.
 
 use clap::ValueEnum;
-use ridgelight::scene::{Albedo, HeightField};
+use ridgelight::scene::{Albedo, HeightField, Specular};
 
 use super::sky;
 
@@ -56,9 +56,16 @@ const STEEPEST_DEG: f64 = 60.0;
 /// Shares of grid points below the lowest and above the highest colour: single peaks and pits do not decide.
 const TAILS: f64 = 0.02;
 
-/// The albedo of a tint; none for [`Tint::None`].
-pub fn albedo(field: &HeightField, tint: Tint) -> Option<Albedo> {
-    Some(Albedo::Map(colours(field, tint)?))
+/// The albedo of a tint, darker where specular leaves less than its brightest channel; none for [`Tint::None`].
+pub fn albedo(field: &HeightField, tint: Tint, specular: Option<&Specular>) -> Option<Albedo> {
+    let mut colours = colours(field, tint)?;
+    let brightest = colours.as_flattened().iter().copied().fold(0.0, f32::max);
+    let left = 1.0 - specular.map_or(0.0, |specular| specular.largest().scale);
+    if brightest > left {
+        let share = left.max(0.0) / brightest;
+        colours.as_flattened_mut().iter_mut().for_each(|channel| *channel *= share);
+    }
+    Some(Albedo::Map(colours))
 }
 
 fn colours(field: &HeightField, tint: Tint) -> Option<Vec<[f32; 3]>> {
@@ -175,6 +182,32 @@ mod tests {
         1.16 * y.cbrt() - 0.16
     }
 
+    /// Specular takes its share first; a tint that fits beside it keeps its colours.
+    #[test]
+    fn a_tint_leaves_room_for_specular() {
+        use ridgelight::scene::PhongSpecular;
+        let heights: Vec<f64> = (0..64).map(f64::from).collect();
+        let field = HeightField::new(8, 8, &heights, [1.0; 2], None).unwrap();
+        let of = |scale: Option<f32>| {
+            let specular =
+                scale.map(|scale| Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
+            match albedo(&field, Tint::Land, specular.as_ref()) {
+                Some(Albedo::Map(map)) => map.as_flattened().to_vec(),
+                _ => panic!("a map"),
+            }
+        };
+        let brightest = |all: &[f32]| all.iter().copied().fold(0.0, f32::max);
+        let plain = of(None);
+        let most = brightest(&plain);
+        assert_eq!(of(Some(0.99 - most)), plain);
+        let dim = of(Some(0.5));
+        assert!((brightest(&dim) - 0.5).abs() <= f32::EPSILON);
+        for (a, b) in dim.iter().zip(&plain) {
+            assert!((a * most - b * 0.5).abs() <= 2.0 * f32::EPSILON, "{a} {b}");
+        }
+        assert_eq!(brightest(&of(Some(1.0))), 0.0);
+    }
+
     /// Eleven colours: each step of CIE lightness is within a third of the mean step, in one direction.
     #[test]
     fn palettes_are_even() {
@@ -240,7 +273,7 @@ mod tests {
         for i in 0..12 {
             assert!((slope_deg(&field, i) - 45.0).abs() < 1e-6);
         }
-        let Some(Albedo::Map(map)) = albedo(&field, Tint::Slope) else { panic!("a map") };
+        let Some(Albedo::Map(map)) = albedo(&field, Tint::Slope, None) else { panic!("a map") };
         assert_eq!(map, vec![SLOPE.at(0.75); 12]);
     }
 
@@ -252,7 +285,7 @@ mod tests {
         let level = HeightField::new(10, 10, &[7.0; 100], [1.0; 2], None).unwrap();
         for (tint, palette) in [(Tint::Land, &LAND), (Tint::Elevation, &ELEVATION)] {
             assert_eq!(peak(&ramp, tint, 0.99), 1.0);
-            let Some(Albedo::Map(map)) = albedo(&level, tint) else { panic!("a map") };
+            let Some(Albedo::Map(map)) = albedo(&level, tint, None) else { panic!("a map") };
             assert_eq!(map, vec![palette.at(0.5); 100]);
             let luminance = |share| sky::luminance(palette.at(share).map(f64::from));
             assert_eq!(peak(&level, tint, 0.99), luminance(0.5) / luminance(1.0));
@@ -265,9 +298,9 @@ mod tests {
     fn level_fields_and_voids_have_colours() {
         let field = HeightField::new(2, 2, &[7.0; 4], [1.0; 2], None).unwrap();
         for tint in [Tint::Land, Tint::Elevation, Tint::Slope] {
-            let Some(Albedo::Map(map)) = albedo(&field, tint) else { panic!("a map") };
+            let Some(Albedo::Map(map)) = albedo(&field, tint, None) else { panic!("a map") };
             assert!(map.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
         }
-        assert!(albedo(&field, Tint::None).is_none());
+        assert!(albedo(&field, Tint::None, None).is_none());
     }
 }

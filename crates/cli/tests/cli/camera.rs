@@ -7,6 +7,9 @@ use crate::{Folder, read, refused};
 fn cameras_out_of_range_are_refused() {
     let folder = Folder::new();
     folder.write("line.asc", b"ncols 4 nrows 1 cellsize 1 0 1 2 3");
+    folder.write("one.asc", b"ncols 1 nrows 1 cellsize 1 5");
+    // A void in the middle is a corner of all cells.
+    folder.write("holes.asc", b"ncols 3 nrows 3 cellsize 1 nodata_value -9 0 1 2 3 -9 5 6 7 8");
     let cases = [
         ("--camera 90", &["--camera", "expected south"][..]),
         ("--camera 1,2,3,4", &["--camera", "expected south"]),
@@ -59,6 +62,16 @@ fn cameras_out_of_range_are_refused() {
             (layers, 2, &["--layers", ".exr output"]),
             ("plan a.asc --camera 0,45 --samples 3", 2, &["--samples: found 3"]),
             ("plan line.asc --camera 0,45", 2, &["a field before a camera"]),
+            (
+                "render one.asc -o out.png --camera",
+                2,
+                &["found 1 × 1 grid points", "2 × 2 or more"],
+            ),
+            (
+                "render holes.asc -o out.png --camera",
+                2,
+                &["3 × 3 grid points with voids", "four corners"],
+            ),
             ("render a.asc -o out.exr --camera 0,45", 1, &["driver"]),
         ],
     );

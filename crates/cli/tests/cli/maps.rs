@@ -82,7 +82,7 @@ fn wrong_maps_are_refused() {
         &[
             ("hillshade a.asc -o o.txt", 2, &["-o: found o.txt", ".npy, .exr or .png"]),
             ("hillshade a.asc -o a.asc", 2, &["-o"]),
-            ("hillshade a.npy -o a.npy", 2, &["which is the input"]),
+            ("hillshade a.npy -o a.npy", 2, &["which is an input"]),
             ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
             (
                 "hillshade a.asc -o o.tif --sun 0,-1",

@@ -219,6 +219,17 @@ fn gpu_a_sun_that_has_set_is_night() {
     }
 }
 
+/// The default tint and any scale of specular make a picture.
+#[test]
+fn gpu_a_tint_leaves_room_for_specular() {
+    let folder = Folder::new();
+    let input = write(&folder, "dunes.npy", &terrain::dunes(16).unwrap());
+    for flags in ["--specular 5,0.5", "--specular 5,0.5 --tint slope", "--specular 5,1 --tint land"]
+    {
+        succeeded(&folder, &format!("render {input} --sky 1 {flags} -o out.png --quiet"));
+    }
+}
+
 /// A .png states the tint that it has.
 #[test]
 fn gpu_the_tint_is_in_the_metadata() {

@@ -120,7 +120,7 @@ fn wrong_requests_are_refused() {
     std::fs::create_dir(folder.path("in")).unwrap();
     std::fs::rename(folder.path("a.npy"), folder.path("in/horizon.npy")).unwrap();
     let own = "bake in/horizon.npy -o in --what horizon --format npy";
-    refused(&folder, &[(own, 2, &["-o", "which is the input"])]);
+    refused(&folder, &[(own, 2, &["-o", "which is an input"])]);
 }
 
 /// `--plan` lists each file with its largest size, and memory of host and device. It runs and writes nothing.

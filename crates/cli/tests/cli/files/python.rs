@@ -120,6 +120,24 @@ fn numpy_arrays_are_read() {
     }
 }
 
+/// A PNG's texts change nothing for Pillow, which takes some keywords, such as "bbox", for its own.
+#[test]
+#[ignore = "needs Pillow: Debian's python3-pil"]
+fn pillow_reads_pictures_with_all_settings() {
+    let folder = Folder::new();
+    let head = "ncols 6\nnrows 5\nxllcorner 500000\nyllcorner 4900000\ncellsize 30\n";
+    let cells: String = (0..30).map(|i| format!("{} ", i * 7919 % 250)).collect();
+    folder.write("dem.asc", (head.to_owned() + &cells).as_bytes());
+    let more = "--bbox 500030,4900000,500150,4900120 --z-scale 2 --nodata 7";
+    let run = folder.run_str(&format!("hillshade dem.asc {more} -o shade.png"));
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let program = "from PIL import Image\n\
+        image = Image.open('shade.png')\n\
+        image.load()\n\
+        print(image.mode, *image.size, image.text['crop'])\n";
+    assert_eq!(python(&folder, program), "L 4 4 500030,4900000,500150,4900120\n");
+}
+
 /// Pillow finds the sides of a DDS, and in its first image the texels of the KTX2: plain, and in blocks that another decoder
 /// decodes. Behind the header are the images of all mip levels.
 #[test]
