@@ -178,11 +178,11 @@ fn lights() {
                 &["--light-cutoff: found 2", "0 to 1"],
             ),
             ("--sphere-light 1,2,3,4,5 --light-cutoff nan", 2, &["--light-cutoff: found NaN"]),
-            ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found NaN"]),
+            ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found nan"]),
             (
                 "--env env.hdr --env-rotate x",
                 2,
-                &["--env-rotate: found x, expected an angle, degrees"],
+                &["--env-rotate: found x, expected an angle within"],
             ),
             ("--env-rotate 90", 2, &["--env"]),
         ],
