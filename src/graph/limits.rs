@@ -1,6 +1,6 @@
 use crate::{Error, Result};
 
-/// Largest number of loop iterations of an invocation: llvmpipe ends all its loops together after 65,535.
+/// Most loop iterations that a pass plans per invocation. llvmpipe ends the loops of an invocation after 65,535 in total.
 pub(crate) const MOST_TURNS: u32 = 60_000;
 
 /// Limits of a device, and the memory budget of a plan.

@@ -14,5 +14,6 @@ pub use limits::{Limits, SweepForm};
 pub use pass::{Pass, ResourceId};
 pub use place_barriers::missing_barriers;
 pub(crate) use place_barriers::{moved_earlier, place_barriers};
+pub(crate) use reach::GROUP_LINES;
 pub use reach::{Axis, CELL, Reach, Rectangle};
 pub use resource::{Format, Kind, Owner, Resource};

@@ -1,6 +1,6 @@
 //! The part of a pass that an edited rectangle needs.
 
-use super::Pass;
+use super::{Pass, shaders};
 
 /// One cell across the march, in the units of `Azimuth::shear`.
 pub const CELL: i32 = 1 << 15;
@@ -100,10 +100,8 @@ pub enum Reach {
     },
 }
 
-/// Invocations of a group of quads, along either side.
-const QUADS_SIDE: u32 = 8;
-/// Lines of a group.
-const GROUP_LINES: u64 = 32;
+/// Lines that a workgroup sweeps again after an edit.
+pub(crate) const GROUP_LINES: u32 = 32;
 
 impl Pass {
     /// Workgroups and push constants after an edit of `rectangle` only.
@@ -122,7 +120,7 @@ impl Pass {
             Reach::Quads(axis) => {
                 let [lane, lanes, marches] = rectangle.along(axis);
                 let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
-                [quads.div_ceil(QUADS_SIDE), marches.div_ceil(QUADS_SIDE), z]
+                shaders::HeightTranspose::groups([quads, marches, z])
             }
             Reach::Lines { axis, line_shift, .. } => {
                 let [_, lanes, marches] = rectangle.along(axis).map(u64::from);
@@ -130,7 +128,7 @@ impl Pass {
                 // lines.
                 let cells = (lanes + 1 + marches - 1) * CELL as u64;
                 let lines = (cells >> line_shift) + 3;
-                [x.min(lines.div_ceil(GROUP_LINES) as u32 + 1), y, z]
+                [x.min(lines.div_ceil(u64::from(GROUP_LINES)) as u32 + 1), y, z]
             }
         };
         (groups, push)

@@ -145,6 +145,10 @@ macro_rules! shader {
 
         $(
             impl $shape {
+                /// Invocations of a workgroup along each axis.
+                #[allow(dead_code, reason = "of most passes only `groups` is used")]
+                pub(crate) const GROUP_SIZE: [u32; 3] = [$x, $y, $z];
+
                 /// Workgroups for so many invocations along each axis.
                 #[allow(dead_code, reason = "some passes count workgroups, not invocations")]
                 pub(crate) fn groups(invocations: [u32; 3]) -> [u32; 3] {

@@ -1,4 +1,4 @@
-//! Numbers that a shader and the host both state, compared.
+//! Tests that constants defined in both GLSL and Rust have equal values.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,21 +6,45 @@ use std::path::Path;
 
 use super::azimuths::{self, Shape};
 use super::bounce_walk::From;
+use super::device_peak;
+use super::facet_mask::DIRECTIONS_A_WORD;
 use super::height_bounds;
-use super::pyramid::GROUPS_ACROSS;
+use super::line_blocks::LONGEST;
 use super::scatter_gather::Source;
 use super::sh_layout::Lit;
 use super::sphere_sh_shade::WITHIN_CELLS;
 use super::sweep::{HullStorage, Sweep};
-use crate::graph::CELL;
+use super::sweeping::LANE_BUFFER_PAD;
+use super::terrain_draw::TILE;
+use crate::graph::{CELL, GROUP_LINES, shaders};
 use crate::scene::{Border, Fuse, REACH_CELLS, Wedges, visible};
 
-/// Numbers that shaders alone use: codes between their own functions, and what they hand to other shaders.
-const OF_SHADERS: [&str; 4] = ["FACET_", "LIGHT_GROUP_WORDS", "RAY_", "RESOLVE_GROUP_WORDS"];
+/// Numbers that shaders alone use: codes between their own functions, sizes of their own lists, strides of lanes. `FACET_LOST` is compared where the host reads it, in the crate of bakes.
+const OF_SHADERS: [&str; 18] = [
+    "BASE",
+    "BEYOND",
+    "BLOCK",
+    "ENTRIES",
+    "FACET_LOST",
+    "GROUPS_ACROSS",
+    "LANE_STRIDE",
+    "LATTICE_STRIDE",
+    "LEVEL_BITS",
+    "MAX_COUNT",
+    "MOST_STEPS",
+    "NEVER",
+    "POINTS",
+    "RAY_FREE",
+    "RAY_GROUND",
+    "RAY_HIT",
+    "RAY_LOST",
+    "SHARE_BITS",
+];
 
 fn host() -> BTreeMap<&'static str, u32> {
-    let fuse = |fuse: Fuse| 1 + fuse as u32;
-    let [slopes_f32, slopes_f16] = Sweep::SLOPE_FORMATS;
+    let fuse = Sweep::fuse_word;
+    let part = |name| device_peak::PARTS.iter().position(|p| *p == name).expect("a part") as u32;
+    let [occluders, slopes_f32, slopes_f16] = Sweep::CONTENTS;
     BTreeMap::from([
         ("AZIMUTH_FLIPS_LANES", azimuths::FLIPS_LANES),
         ("AZIMUTH_FLIPS_MARCH", azimuths::FLIPS_MARCH),
@@ -31,6 +55,10 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("BY_NLP", Wedges::Nlp as u32),
         ("BY_TABLE", Wedges::Table as u32),
         ("CELL_SHIFT", CELL.trailing_zeros()),
+        ("COPY", part("copy")),
+        ("FETCH", part("fetch")),
+        ("FILL", part("fill")),
+        ("FMA", part("fma")),
         ("FROM_BETWEEN", From::Between as u32),
         ("FROM_BLOCKS", height_bounds::FROM_BLOCKS),
         ("FROM_CARRIED", Source::Carried as u32),
@@ -48,13 +76,18 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("FUSE_NEAREST", fuse(Fuse::Nearest)),
         ("FUSE_OWN", fuse(Fuse::Own)),
         ("FUSE_SLOPES", fuse(Fuse::Slopes)),
-        ("GROUPS_ACROSS", GROUPS_ACROSS),
+        ("FACET_DIRECTIONS", DIRECTIONS_A_WORD as u32),
+        ("GROUP_LINES", GROUP_LINES),
         ("HULL_IN_OCCLUDERS", HullStorage::Occluders as u32),
         ("HULL_IN_PRIVATE", HullStorage::Private as u32),
         ("HULL_IN_SHARED", HullStorage::Shared as u32),
-        ("LATTICE_OCCLUDERS", Sweep::Crossings.lattice_content()),
+        ("LANE_BUFFER_PAD", LANE_BUFFER_PAD),
+        ("LATTICE_OCCLUDERS", occluders),
         ("LATTICE_SLOPES_F16", slopes_f16),
-        ("LATTICE_SLOPES_F32", Sweep::March { distances: false }.lattice_content()),
+        ("LATTICE_SLOPES_F32", slopes_f32),
+        // A word of the mask is eight columns of four rows.
+        ("LIGHT_GROUP_WORDS", shaders::SkyShade::GROUP_SIZE[1]),
+        ("MOST_LEVEL", LONGEST.trailing_zeros()),
         ("POINT_GROUND", visible::GROUND),
         ("POINT_LOST", visible::LOST),
         ("POINT_SKY", visible::SKY),
@@ -62,9 +95,12 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("RECEIVER_COSINE", Lit::Cosine as u32),
         ("RECEIVER_PLANE", Lit::Plane as u32),
         ("RECEIVER_SPECULAR", Lit::Specular as u32),
+        ("RESOLVE_GROUP_WORDS", shaders::LightResolve::GROUP_SIZE[1] / 4),
         ("SHAPE_DISC", Shape::Disc as u32),
         ("SHAPE_PATCH", Shape::Patch as u32),
         ("SHAPE_POINT", Shape::Point as u32),
+        ("SHARED", part("shared")),
+        ("SIDE", TILE + 1),
         ("SLOPES_F16", slopes_f16),
         ("SLOPES_F32", slopes_f32),
         ("WITHIN_CELLS", WITHIN_CELLS),
@@ -99,7 +135,15 @@ fn numbers(folder: &Path, found: &mut Vec<(String, String, u32)>) {
     }
 }
 
-/// A new `const uint` with a number is in `host`, or shaders alone use it.
+/// Passes that share their workgroups, or their counts, have workgroups of one size.
+#[test]
+fn passes_that_share_groups_have_one_size() {
+    let reductions = [shaders::ShadeReduce::GROUP_SIZE, shaders::VectorReduce::GROUP_SIZE];
+    assert_eq!(reductions, [shaders::HeightReduce::GROUP_SIZE; 2]);
+    assert_eq!(shaders::SunShade::GROUP_SIZE, shaders::SkyShade::GROUP_SIZE);
+}
+
+/// A new `const uint` or `const int` with a number is in `host`, or in the list of those that shaders alone use.
 #[test]
 fn shaders_and_host_state_the_same_numbers() {
     let mut found = Vec::new();
@@ -112,7 +156,7 @@ fn shaders_and_host_state_the_same_numbers() {
                 left.remove(name.as_str());
             }
             None => assert!(
-                of_type != "uint" || OF_SHADERS.iter().any(|of| name.starts_with(of)),
+                of_type == "float" || OF_SHADERS.contains(&name.as_str()),
                 "{name} = {number} in a shader: compare it here with the host's"
             ),
         }

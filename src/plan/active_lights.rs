@@ -272,8 +272,11 @@ impl<'a> ActiveLights<'a> {
             if slices != quality.sun_azimuths
                 && slices == self.key_azimuths(key, quality.sun_azimuths)
             {
-                let than = if slices > quality.sun_azimuths { "wider" } else { "narrower" };
-                notes.push(format!("key {}: {slices} slices, as it is {than} than 25°", i + 1));
+                let (number, setting) = (i + 1, quality.sun_azimuths);
+                let width = key.width_rad.to_degrees();
+                notes.push(format!(
+                    "key {number}: {slices} slices for its width of {width:.1}°; {setting} are for 25°"
+                ));
             }
         }
         Ok(lists)

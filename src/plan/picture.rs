@@ -204,9 +204,10 @@ fn with_cache(
     let shadows = (!of_lights.is_empty()).then(|| {
         let azimuths = held.shadows.iter().flat_map(|l| &lists[*l]);
         let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
-        // A sun near the zenith has fewer slices. At least `sun_azimuths`, so that the number does not change as the sun moves.
-        let slices = held.shadows.iter().map(|l| lists[*l].len() as u32);
-        let slices = slices.fold(quality.sun_azimuths, u32::max);
+        // A sun near the zenith has fewer slices. With a sun at least `sun_azimuths`, so that the number does not change as it moves.
+        let has_sun = of_lights.iter().any(|i| *i < active.suns.len());
+        let least = if has_sun { quality.sun_azimuths } else { 1 };
+        let slices = held.shadows.iter().map(|l| lists[*l].len() as u32).fold(least, u32::max);
         Shadows::make(&mut builder, azimuths, of, (&of_lights, count), (slices, limits))
     });
     let walked_azimuths = lists.last().filter(|_| is_walked && bounces > 0);

@@ -8,7 +8,8 @@ use crate::{Error, Result};
 ///
 /// Outputs, all R32F. Heights are in metres over the field's base.
 /// - "lit_above": the height from which the whole sun is visible.
-/// - "penumbra": the distance from "lit_above" down to the height at which the same ground hides the whole sun. At a height z in between, it hides
+/// - "penumbra": the distance from "lit_above" down to the height at which the occluder that determines it hides the whole sun. At a height z in
+///   between, it hides
 ///   (lit_above - z) / penumbra of the disc's height.
 /// - "sun_share": the visible share of the sun's disc at the ground, [0..1], without the cosine.
 ///

@@ -109,7 +109,7 @@ impl View {
         let Scene { field, lights, .. } = scene;
         if field.rows() < 2 || field.cols() < 2 {
             let found = format!("{} × {} grid points", field.cols(), field.rows());
-            return Err(Error::setting("a field before a camera", found, "2 × 2 or more"));
+            return Err(Error::setting("a field viewed by a camera", found, "2 × 2 or more"));
         }
         let radiance = lit.find("radiance").and_then(|id| lit.resources.get(id.0)?.format());
         let radiance = radiance.ok_or_else(|| {

@@ -161,8 +161,8 @@ words! {
         Nlp = "nlp",
         /// A table of wedges between the horizons of two azimuths
         ///
-        /// Horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008). Slower than slices with
-        /// more than four azimuths; its error has not been measured. Memory: 4 bytes per texel and azimuth.
+        /// Horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008). With more than four
+        /// azimuths it is slower than `slices`; its error has not been measured. Memory: 4 bytes per texel and azimuth.
         Table = "table",
     }
 }

@@ -28,7 +28,7 @@ settings! {
         ///
         /// Fewer show steps in soft shadows; more take time in proportion. A wide sun needs more.
         ///
-        /// A key light has `sun_azimuths` × width / 25° slices, from half `sun_azimuths` to 4 × `sun_azimuths`. A sphere light has up to
+        /// A key light has `sun_azimuths` × width / 25° slices, clamped to between half and 4 × `sun_azimuths`. A sphere light has up to
         /// 8 × `sun_azimuths` at texels where its angular width is large, and fewer if it is narrower than a cell.
         Advanced "sun_azimuths" sun_azimuths: u32 = 8, Values::Whole(1..=256);
 

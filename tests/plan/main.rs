@@ -352,12 +352,12 @@ fn key_lights() {
     let lit = picture(&dropped, Border::Open);
     // 28.6° wide: 8 × 28.6 / 25 = 9 slices.
     assert_eq!(lit.azimuths.len(), 8 + 9);
-    let wide = "key 2: 9 slices, as it is wider than 25°";
+    let wide = "key 2: 9 slices for its width of 28.6°; 8 are for 25°";
     assert!(lit.notes.iter().any(|n| n == wide), "{:?}", lit.notes);
     // 11.5° wide: half of 8.
     let few = picture(&[KeyLight { width_rad: 0.2, ..key(0.5, [1.0; 3]) }], Border::Open);
     assert_eq!(few.azimuths.len(), 8 + 4);
-    let narrow = "key 1: 4 slices, as it is narrower than 25°";
+    let narrow = "key 1: 4 slices for its width of 11.5°; 8 are for 25°";
     assert!(few.notes.iter().any(|n| n == narrow), "{:?}", few.notes);
     let visible: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
     assert_eq!(visible, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);

@@ -341,3 +341,14 @@ fn corners_of(facet: usize, cells_x: usize, [cols, rows]: [usize; 2]) -> [usize;
     let beside = if facet.is_multiple_of(2) { row * cols + right } else { below * cols + col };
     [row * cols + col, beside, below * cols + right]
 }
+
+#[cfg(test)]
+mod tests {
+    /// The bit of rays that exceed the step limit, as the shader states it.
+    #[test]
+    fn the_bit_of_lost_rays_is_the_shaders() {
+        let shader = include_str!("../../../shaders_glsl/bake/facets.glsl");
+        let stated = format!("const uint FACET_LOST = {:#x}u;", super::LOST);
+        assert!(shader.contains(&stated), "{stated}");
+    }
+}

@@ -218,7 +218,7 @@ typedef struct RidgelightQuality {
     // Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes.
     uint32_t azimuths;
     // Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
-    // soft shadows. A key light has sun_azimuths * width / 25 degrees, sun_azimuths / 2 to 4 * sun_azimuths.
+    // soft shadows. A key light has sun_azimuths * width / 25 degrees of them, between half and 4 * sun_azimuths.
     uint32_t sun_azimuths;
     // Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
     // 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
@@ -546,7 +546,7 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
 // Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 //
 // Outputs, R32F: "lit_above", the height from which the whole sun is visible, in the unit and from the zero of
-// "heights". "penumbra", the distance from there down to the height at which the same ground hides the whole sun. "sun_share", the
+// "heights". "penumbra", the distance from there down to the height at which its occluder hides the whole sun. "sun_share", the
 // visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
 // "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 //

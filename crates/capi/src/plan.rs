@@ -93,7 +93,7 @@ unsafe impl SizeFirst for RidgelightOuter {}
 /// Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 ///
 /// Outputs, R32F: "lit_above", the height from which the whole sun is visible, in the unit and from the zero of
-/// "heights". "penumbra", the distance from there down to the height at which the same ground hides the whole sun. "sun_share", the
+/// "heights". "penumbra", the distance from there down to the height at which its occluder hides the whole sun. "sun_share", the
 /// visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
 /// "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 ///

@@ -14,7 +14,7 @@ pub struct RidgelightQuality {
     /// Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes.
     pub azimuths: u32,
     /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
-    /// soft shadows. A key light has sun_azimuths * width / 25 degrees, sun_azimuths / 2 to 4 * sun_azimuths.
+    /// soft shadows. A key light has sun_azimuths * width / 25 degrees of them, between half and 4 * sun_azimuths.
     pub sun_azimuths: u32,
     /// Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
     /// 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.

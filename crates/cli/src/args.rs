@@ -268,8 +268,8 @@ pub struct RenderArgs {
     pub layers: Vec<Layer>,
     /// Factor on the radiance of a .png. Default: automatic
     ///
-    /// By default the 99th percentile of the picture's luminance becomes 0.8. It becomes less if no ground has the lightest
-    /// colour of --tint, and a tenth of that at night: if the only light is a --sun below the horizontal. Then all pictures have the same tone curve:
+    /// By default the 99th percentile of the picture's luminance becomes 0.8. The target is lower if no ground has the
+    /// lightest colour of --tint. At night (the only light is a --sun below the horizontal) it is a tenth of that. Then all pictures have the same tone curve:
     /// linear up to 0.8, compressed towards 1 above, sRGB-encoded. Give a factor to pictures that you compare.
     #[arg(
         long,

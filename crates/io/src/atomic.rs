@@ -255,11 +255,10 @@ pub fn check_room(files: &[(&Path, u64)]) -> Result<()> {
 /// The disk of `path`, and its bytes free to this user.
 #[cfg(unix)]
 fn free(path: &Path) -> Option<(u64, u64)> {
-    // A folder that is made later has the disk of the one that will hold it.
-    let mut folder = folder_of(path);
-    while !folder.exists() {
-        folder = folder_of(folder);
-    }
+    // A folder that does not exist yet will be on the disk of its nearest existing parent.
+    let parents = path.ancestors().skip(1);
+    let named = |parent: &'_ Path| parent.as_os_str().is_empty().then_some(Path::new("."));
+    let folder = parents.map(|p| named(p).unwrap_or(p)).find(|folder| folder.exists())?;
     let about = rustix::fs::statvfs(folder).ok()?;
     let id = std::os::unix::fs::MetadataExt::dev(&std::fs::metadata(folder).ok()?);
     Some((id, about.f_bavail.saturating_mul(about.f_frsize)))
@@ -287,7 +286,11 @@ mod tests {
         let most = free / 4 * 3;
         check_room(&[(&a, most)]).unwrap();
         assert!(check_room(&[(&a, most), (&b, most)]).is_err());
-        // A missing folder is reported when the file is made.
-        check_room(&[(&folder.path().join("no/a.npy"), 1 << 62)]).unwrap();
+        // A folder that is made later.
+        let later = folder.path().join("no/a.npy");
+        check_room(&[(&later, most)]).unwrap();
+        let said = check_room(&[(&later, 1 << 62)]).unwrap_err().to_string();
+        assert!(said.contains("no/a.npy: needs"), "{said}");
+        assert_eq!(super::free(Path::new("no/b.npy")), super::free(Path::new("b.npy")));
     }
 }

@@ -241,9 +241,11 @@ fn packed(
     encoder.set_depth(depth);
     let write = || {
         for (name, text) in metadata {
+            // Pillow takes a text `bbox` for the bounds of the pixels.
+            let name = if name == "bbox" { "crop" } else { name };
             match text.is_ascii() {
-                true => encoder.add_text_chunk(name.clone(), text.clone())?,
-                false => encoder.add_itxt_chunk(name.clone(), text.clone())?,
+                true => encoder.add_text_chunk(name.to_owned(), text.clone())?,
+                false => encoder.add_itxt_chunk(name.to_owned(), text.clone())?,
             }
         }
         let mut writer = encoder.write_header()?;

@@ -8,7 +8,7 @@ use crate::scene::Border;
 use std::ops::Range;
 
 /// Steps of the longest block, 2^MOST_LEVEL of the shaders.
-const LONGEST: u32 = 256;
+pub(crate) const LONGEST: u32 = 256;
 /// Blocks of several azimuths are made at once while an image takes no more than this, and than an eighth of the budget
 /// that is left; of more azimuths a dispatch would hardly be faster. 72 MiB hold eight azimuths of grey light at 1024².
 const AT_ONCE_BYTES: u64 = 72 << 20;

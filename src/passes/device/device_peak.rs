@@ -4,10 +4,12 @@ use crate::graph::{Builder, Format, Limits, Owner, shaders};
 pub(crate) const SIDE: u32 = 512;
 /// Larger than the caches of most GPUs, and of most processors.
 const MOST_BYTES: [u64; 2] = [256 << 20, 64 << 20];
-const GROUP_SIZE: u64 = 64;
+const GROUP_SIZE: u64 = shaders::DevicePeak::GROUP_SIZE[0] as u64;
 /// Copies of 16 bytes of an invocation.
 const COPIES: u64 = 8;
 const INVOCATIONS: [u64; 2] = [1 << 20, 1 << 18];
+/// The parts, by the shader's number.
+pub(crate) const PARTS: [&str; 5] = ["fill", "copy", "fetch", "shared", "fma"];
 
 /// A pass that fills the memory, then one for each unit of the device. Of a copy, `bytes` counts; of the others, `texels`
 /// counts fetches, reads of 8 bytes, and floating-point operations.
@@ -32,27 +34,19 @@ pub(crate) fn plan(builder: &mut Builder, limits: &Limits) {
     let written: &[_] = &[("result", result)];
     let [filling, fetching] = [bytes + image_bytes, 16 * invocations + image_bytes];
     let writing = 16 * invocations;
-    // Part, reason, invocations, rounds, bindings, bytes, operations of a round. Of fetch, shared and fma, rounds and
+    // Reason, invocations, rounds, bindings, bytes, operations of a round. Of fetch, shared and fma, rounds and
     // operations stay the same in every version: `bench --against` compares times of equal bytes.
     let parts = [
-        (
-            "fill",
-            "writes every page, so that none share memory",
-            copying,
-            COPIES,
-            filled,
-            filling,
-            0,
-        ),
-        ("copy", "the peak rate of memory", copying, COPIES, copied, 2 * bytes, 0),
-        ("fetch", "the peak rate of texel fetches", invocations, 32, fetched, fetching, 1),
-        ("shared", "the peak rate of shared memory", invocations, 128, written, writing, 1),
-        ("fma", "the peak rate of arithmetic", invocations, 256, written, writing, 16),
+        ("writes every page, so that none share memory", copying, COPIES, filled, filling, 0),
+        ("the peak rate of memory", copying, COPIES, copied, 2 * bytes, 0),
+        ("the peak rate of texel fetches", invocations, 32, fetched, fetching, 1),
+        ("the peak rate of shared memory", invocations, 128, written, writing, 1),
+        ("the peak rate of arithmetic", invocations, 256, written, writing, 16),
     ];
-    for (number, (part, why, count, rounds, bound, traffic, operations)) in (0..).zip(parts) {
+    for (number, (why, count, rounds, bound, traffic, operations)) in (0..).zip(parts) {
         builder.pass(
             shaders::DevicePeak { part: number },
-            part,
+            PARTS[number as usize],
             why,
             [(count / GROUP_SIZE) as u32, 1, 1],
             &shaders::DevicePeakPush {

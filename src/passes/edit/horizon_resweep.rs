@@ -1,4 +1,4 @@
-use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
+use crate::graph::{Builder, GROUP_LINES, Reach, Rectangle, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::LineSweep;
 use crate::scene::Fuse;
@@ -34,7 +34,7 @@ pub(crate) fn plan(
         },
         part,
         "lines that cross the edit, until it has left their hulls",
-        [batch.most_lines.div_ceil(32), 1, batch.count],
+        [batch.most_lines.div_ceil(GROUP_LINES), 1, batch.count],
         &shaders::HorizonResweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

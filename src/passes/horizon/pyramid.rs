@@ -37,7 +37,7 @@ pub struct Level {
 }
 
 /// Most workgroups in a row of a dispatch; devices have at least 65,535.
-pub(crate) const GROUPS_ACROSS: u32 = 1024;
+const GROUPS_ACROSS: u32 = 1024;
 
 /// Levels that one dispatch makes.
 pub(crate) struct Octave<'a> {
@@ -60,7 +60,6 @@ impl<'a> Octave<'a> {
         for (first, number) in first_group.iter_mut().zip(numbers.clone()) {
             *first = groups;
             let [cols, rows] = pyramid.level(number).size;
-            // Reductions of shades have groups of the same size.
             let [across, down, _] = shaders::HeightReduce::groups([cols, rows, 1]);
             groups += (across * down) as i32;
         }

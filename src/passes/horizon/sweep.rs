@@ -261,8 +261,13 @@ fn form_of(
 }
 
 impl Sweep {
-    /// The shaders' SLOPE_FORMAT, and LATTICE where slopes are stored: of f32 and of f16.
-    pub(crate) const SLOPE_FORMATS: [u32; 2] = [1, 2];
+    /// Values of the shaders' LATTICE: occluders, and slopes as f32 and as f16. Those of slopes are SLOPE_FORMAT, too.
+    pub(crate) const CONTENTS: [u32; 3] = [0, 1, 2];
+
+    /// The shaders' FUSE of lines.
+    pub(crate) fn fuse_word(fuse: Fuse) -> u32 {
+        1 + fuse as u32
+    }
 
     /// The form for a quality and a device.
     ///
@@ -328,11 +333,11 @@ impl Sweep {
                 notes.push(
                     "f16 changes nothing here: this fuse stores u16 steps, not slopes".into(),
                 );
-                0
+                Sweep::CONTENTS[0]
             }
-            (false, _) => 0,
-            (true, Precision::F16) => Sweep::SLOPE_FORMATS[1],
-            (true, _) => Sweep::SLOPE_FORMATS[0],
+            (false, _) => Sweep::CONTENTS[0],
+            (true, Precision::F16) => Sweep::CONTENTS[2],
+            (true, _) => Sweep::CONTENTS[1],
         };
         let packed = quality.precision == Precision::Packed;
         if packed {
@@ -481,7 +486,7 @@ impl Sweep {
     /// The shaders' FUSE.
     pub(crate) fn fuse_mode(&self) -> u32 {
         match self {
-            Sweep::Lines(lines) => 1 + lines.fuse as u32,
+            Sweep::Lines(lines) => Self::fuse_word(lines.fuse),
             Sweep::Crossings => 7,
             _ => 0,
         }
@@ -491,8 +496,8 @@ impl Sweep {
     pub(crate) fn lattice_content(&self) -> u32 {
         match self {
             Sweep::Lines(lines) => lines.slope_format,
-            Sweep::Crossings => 0,
-            _ => Self::SLOPE_FORMATS[0],
+            Sweep::Crossings => Self::CONTENTS[0],
+            _ => Self::CONTENTS[1],
         }
     }
 

@@ -37,7 +37,7 @@ pub(crate) struct Sweeping {
 }
 
 /// Floats of a buffer of heights by lanes before the first height and after the last: LANE_BUFFER_PAD of sweep.glsl.
-const LANE_BUFFER_PAD: u32 = 4;
+pub(crate) const LANE_BUFFER_PAD: u32 = 4;
 
 /// Output of sweeps.
 #[derive(Clone, Copy)]

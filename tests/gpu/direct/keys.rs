@@ -96,7 +96,7 @@ fn a_wall_cuts_a_key_in_elevation() {
             (0..20_000).map(light).sum::<f64>() / PI
         };
         let scene = under_key(wall.clone(), Border::Plane, key);
-        // 64 for a width of 25°, and more in proportion to the width.
+        // 64 slices for a width of 25°; other widths in proportion.
         let slices = key.slices(64) as usize;
         let rule = (key.width_rad / 64.0).powi(2) * (1.1 * key.width_rad / 24.0 + 0.075) / TAU;
         let error =

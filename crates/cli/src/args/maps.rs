@@ -24,8 +24,8 @@ Examples:
 const SHADOW_HELP: &str = "\
 Bands: sun_share, the visible share of the sun's disc at the ground, 0 to 1, without the cosine. lit_above, the height in \
 metres from which the whole sun is visible. penumbra, the distance from \
-lit_above down to the height at which the same ground hides the whole sun. A .png \
-has only sun_share. At a height z in between, that ground hides (lit_above - z) / penumbra of the disc's height.
+lit_above down to the height at which its occluder hides the whole sun. A .png \
+has only sun_share. At a height z in between, that occluder hides (lit_above - z) / penumbra of the disc's height.
 
 `render --sun` uses exact horizons and is more accurate.
 

@@ -112,7 +112,8 @@ pub struct SurfaceArgs {
     /// Albedo by height or slope: none, elevation, slope or land
     ///
     /// Default land for a .png and the window, else none. Colours span the heights from the 2nd to the 98th percentile, and
-    /// slopes from 0 to 60 degrees. All are darker where the scale of --specular leaves less.
+    /// slopes from 0 to 60 degrees. If the brightest colour plus the scale
+    /// of --specular exceeds 1, the tint is darkened to fit.
     #[arg(long, conflicts_with = "albedo", hide_possible_values = true, help_heading = "Surface")]
     pub tint: Option<Tint>,
     /// Phong specular: exponent 0 to 10000, scale 0 to 1

@@ -71,27 +71,33 @@ pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<O
     options.check()?;
     let framed = on_plinth.as_ref().map(|(_, framed)| framed);
     let camera = placed(&args.eye, at, (&scene.field, framed), options.aspect())?;
+    if at.elevation >= 0.0 {
+        warn_below(&camera, &scene.field);
+    }
     Ok(Some(CameraView { camera, options }))
 }
 
-/// Refuses a field of which a camera shows nothing: without a cell whose four grid points have heights.
+/// Refuses a field of which a camera shows nothing: each triangle of its cells has a void corner.
 fn check_cells(field: &HeightField) -> Result<()> {
     let (rows, cols) = (field.rows(), field.cols());
     let is_known = |i: usize| !field.voids().is_some_and(|voids| voids[i]);
     let is_shown = |i: &usize| {
         let (row, col) = (i / cols, i % cols);
         let has_cell = row + 1 < rows && col + 1 < cols;
-        has_cell && [0, 1, cols, cols + 1].iter().all(|next| is_known(i + next))
+        has_cell
+            && is_known(*i)
+            && is_known(i + cols + 1)
+            && (is_known(i + 1) || is_known(i + cols))
     };
     if (0..rows * cols).any(|i| is_shown(&i)) {
         return Ok(());
     }
     let (voids, expected) = match field.voids() {
         None => ("", "2 × 2 or more"),
-        Some(_) => (" with voids", "a cell whose four corners have heights"),
+        Some(_) => (" with voids", "a triangle of a cell without voids at its corners"),
     };
     let found = format!("{cols} × {rows} grid points{voids}");
-    Err(Error::setting("a field before a camera", found, expected))
+    Err(Error::setting("a field viewed by a camera", found, expected))
 }
 
 /// Whether a place, metres east and north of the south-west corner, lies on the field or at most its own size beside it.
@@ -161,22 +167,32 @@ fn placed(
         }
     }
     camera.check()?;
-    warn_below(&camera, field);
     Ok(camera)
 }
 
-/// Warns of an eye below the ground, which sees the ground from inside.
+/// Warns if the eye is below the ground: the picture would show the surface from below. The surface of a cell is no lower than the
+/// lowest of its corners.
 fn warn_below(camera: &Camera, field: &HeightField) {
     let [east_m, north_m, up_m] = camera.eye_m().to_array();
-    let [width, height] = [
-        field.cell_m()[0] * (field.cols() - 1) as f64,
-        field.cell_m()[1] * (field.rows() - 1) as f64,
-    ];
-    let is_over = (0.0..=width).contains(&east_m) && (0.0..=height).contains(&north_m);
-    let below_m = nearest_m(field, [east_m, north_m]) - up_m;
-    if matches!(camera.lens, Lens::Perspective { .. }) && is_over && below_m > 0.0 {
+    let [cell_x, cell_y] = field.cell_m();
+    let [col, row] =
+        [east_m / cell_x, (field.rows() - 1) as f64 - north_m / cell_y].map(f64::floor);
+    let is_in = |place: f64, count: usize| (0.0..(count - 1) as f64).contains(&place);
+    let is_perspective = matches!(camera.lens, Lens::Perspective { .. });
+    if !is_perspective || !is_in(col, field.cols()) || !is_in(row, field.rows()) {
+        return;
+    }
+    let first = row as usize * field.cols() + col as usize;
+    let corners = [first, first + 1, first + field.cols(), first + field.cols() + 1];
+    if corners.iter().any(|i| field.voids().is_some_and(|voids| voids[*i])) {
+        return;
+    }
+    let lowest = corners.iter().fold(f32::INFINITY, |low, i| low.min(field.heights_m()[*i]));
+    let below_m = field.base_m() + f64::from(lowest) - up_m;
+    if below_m > 0.0 {
         crate::setup::warning(&format!(
-            "the camera is {below_m:.0} m below the ground: raise it, or give a larger distance or --look-at"
+            "--camera: the eye is {below_m:.2} m below the ground: give --camera a higher elevation or a larger distance, or \
+             --look-at a higher point"
         ));
     }
 }

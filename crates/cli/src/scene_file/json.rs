@@ -50,7 +50,7 @@ impl<'t> Found<'t> {
             let place = format!("line {}, column {}", error.line(), error.column());
             let error = error.to_string();
             let reason = error.split(" at line").next().unwrap_or_default();
-            Error::file(path, place, format!("other text ({reason})"), "JSON")
+            Error::file(path, place, format!("invalid JSON ({reason})"), "valid JSON")
         })?;
         Ok(Self { path, text, raw, key: String::new() })
     }

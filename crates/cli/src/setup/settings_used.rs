@@ -52,8 +52,7 @@ pub fn asked(
         all.push(("band".to_owned(), band.to_string()));
     }
     if let Some(bbox) = surface.bbox {
-        // Pillow takes a PNG's text "bbox" as the place of its pixels.
-        all.push(("crop".to_owned(), bbox.map(|x| x.to_string()).join(",")));
+        all.push(("bbox".to_owned(), bbox.map(|x| x.to_string()).join(",")));
     }
     let Some((args, surface, scene)) = lit else { return all };
     match surface.tint {

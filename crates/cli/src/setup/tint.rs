@@ -56,14 +56,21 @@ const STEEPEST_DEG: f64 = 60.0;
 /// Shares of grid points below the lowest and above the highest colour: single peaks and pits do not decide.
 const TAILS: f64 = 0.02;
 
-/// The albedo of a tint, darker where specular leaves less than its brightest channel; none for [`Tint::None`].
+/// The albedo of a tint, so dark that its brightest channel and the scale of specular are at most 1 together: everywhere, or by
+/// the scale of each texel. None for [`Tint::None`].
 pub fn albedo(field: &HeightField, tint: Tint, specular: Option<&Specular>) -> Option<Albedo> {
     let mut colours = colours(field, tint)?;
     let brightest = colours.as_flattened().iter().copied().fold(0.0, f32::max);
-    let left = 1.0 - specular.map_or(0.0, |specular| specular.largest().scale);
-    if brightest > left {
-        let share = left.max(0.0) / brightest;
-        colours.as_flattened_mut().iter_mut().for_each(|channel| *channel *= share);
+    let scale = |i: usize| match specular {
+        None => 0.0,
+        Some(Specular::Constant(one)) => one.scale,
+        Some(Specular::Map(map)) => map[i].scale,
+    };
+    for (i, colour) in colours.iter_mut().enumerate() {
+        let left = (1.0 - scale(i)).max(0.0);
+        if left < brightest {
+            *colour = colour.map(|channel| channel * (left / brightest));
+        }
     }
     Some(Albedo::Map(colours))
 }
@@ -206,6 +213,17 @@ mod tests {
             assert!((a * most - b * 0.5).abs() <= 2.0 * f32::EPSILON, "{a} {b}");
         }
         assert_eq!(brightest(&of(Some(1.0))), 0.0);
+        // Of a map, only the texels with specular.
+        let phong =
+            |i: usize| PhongSpecular { exponent: 5.0, scale: if i == 3 { 0.5 } else { 0.0 } };
+        let map = Specular::Map((0..64).map(phong).collect());
+        let Some(Albedo::Map(mixed)) = albedo(&field, Tint::Land, Some(&map)) else {
+            panic!("a map")
+        };
+        let from = |all: &[f32], i: usize| [all[3 * i], all[3 * i + 1], all[3 * i + 2]];
+        for (i, colour) in mixed.iter().enumerate() {
+            assert_eq!(*colour, from(if i == 3 { &dim } else { &plain }, i), "texel {i}");
+        }
     }
 
     /// Eleven colours: each step of CIE lightness is within a third of the mean step, in one direction.

@@ -8,8 +8,9 @@ fn cameras_out_of_range_are_refused() {
     let folder = Folder::new();
     folder.write("line.asc", b"ncols 4 nrows 1 cellsize 1 0 1 2 3");
     folder.write("one.asc", b"ncols 1 nrows 1 cellsize 1 5");
-    // A void in the middle is a corner of all cells.
-    folder.write("holes.asc", b"ncols 3 nrows 3 cellsize 1 nodata_value -9 0 1 2 3 -9 5 6 7 8");
+    // Each triangle has the north-west and the south-east corner of its cell.
+    folder.write("holes.asc", b"ncols 2 nrows 2 cellsize 1 nodata_value -9 -9 1 2 3");
+    folder.write("triangle.asc", b"ncols 2 nrows 2 cellsize 1 nodata_value -9 1 -9 2 3");
     let cases = [
         ("--camera 90", &["--camera", "expected south"][..]),
         ("--camera 1,2,3,4", &["--camera", "expected south"]),
@@ -58,10 +59,10 @@ fn cameras_out_of_range_are_refused() {
     refused(
         &folder,
         &[
-            (line, 2, &["a field before a camera", "2 × 2 or more"]),
+            (line, 2, &["a field viewed by a camera", "2 × 2 or more"]),
             (layers, 2, &["--layers", ".exr output"]),
             ("plan a.asc --camera 0,45 --samples 3", 2, &["--samples: found 3"]),
-            ("plan line.asc --camera 0,45", 2, &["a field before a camera"]),
+            ("plan line.asc --camera 0,45", 2, &["a field viewed by a camera"]),
             (
                 "render one.asc -o out.png --camera",
                 2,
@@ -70,8 +71,9 @@ fn cameras_out_of_range_are_refused() {
             (
                 "render holes.asc -o out.png --camera",
                 2,
-                &["3 × 3 grid points with voids", "four corners"],
+                &["2 × 2 grid points with voids", "a triangle"],
             ),
+            ("render triangle.asc -o out.png --camera", 1, &["driver"]),
             ("render a.asc -o out.exr --camera 0,45", 1, &["driver"]),
         ],
     );
@@ -197,5 +199,27 @@ fn gpu_samples_are_the_devices() {
         // Vulkan requires these of every device.
         let must = ["1", "4"].contains(&samples);
         assert!(run.status == Some(0) || (is_refused && !must), "{samples}: {}", run.err);
+    }
+}
+
+/// An eye inside the ground has a warning. Not one above it, one beside the field, a view from below, or rays from far away. The
+/// eye is 20 m from the point at height 50, 5 degrees higher.
+#[test]
+fn eyes_below_the_ground_have_a_warning() {
+    let folder = Folder::new();
+    write_field(&folder, 16, |_, _| 100.0);
+    let below = 100.0 - 50.0 - 20.0 * 5_f64.to_radians().sin();
+    let warning = format!("warning: --camera: the eye is {below:.2} m below the ground");
+    for (camera, warns) in [
+        ("--camera 0,5,20 --look-at 75,75,50", true),
+        ("--camera 0,5,20 --look-at 75,75,100", false),
+        ("--camera 0,5,5000 --look-at 75,75,50", false),
+        ("--camera 0,-5,20 --look-at 75,75,50", false),
+        ("--camera 0,5,20 --look-at 75,75,50 --ortho", false),
+    ] {
+        let words = format!("plan field.npy --cell 10 {camera}");
+        let run = folder.run_without_driver(&words.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.status, Some(0), "{camera}: {}", run.err);
+        assert_eq!(run.err.contains(&warning), warns, "{camera}: {}", run.err);
     }
 }

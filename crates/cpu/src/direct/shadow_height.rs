@@ -36,7 +36,7 @@ pub struct ShadowHeight {
 }
 
 impl ShadowHeight {
-    /// From the first height down to that at which the same ground hides the whole sun, metres.
+    /// Distance from the first height down to that at which its occluder hides the whole sun, metres.
     pub fn penumbra_m(&self, disc: &Disc) -> f64 {
         let [lower, upper] = disc.rise_m();
         self.ahead[0] * (upper - lower)

@@ -73,7 +73,7 @@ pub fn run(mut args: Args) -> Outcome {
     let mut gpu = args.open()?;
     let Quality { azimuths, sun_azimuths, .. } = Quality::default();
     println!(
-        "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices for a key light 25° wide, and for others in proportion to their width, at least half as many; medians of {TURNS}, drawn in \
+        "{}: frames of new heights of {side}², {azimuths} azimuths, {sun_azimuths} slices for a key light 25° wide, other widths in proportion, from half to four times as many; medians of {TURNS}, drawn in \
          turn (exact lines and brute force once)\n\
          Error of light: RMSE relative to the mean, %, against brute force in {FINE_AZIMUTHS} azimuths (border periodic: \
          {PERIODIC_AZIMUTHS}) and tables of 1024 elevations, without voids; key lights: against brute force in {FINER} times as many slices as the default; `--lines exact` refuses key lights\n\

@@ -120,7 +120,7 @@ fn numpy_arrays_are_read() {
     }
 }
 
-/// A PNG's texts change nothing for Pillow, which takes some keywords, such as "bbox", for its own.
+/// Pillow opens a PNG with all settings in its text chunks. It gives some keywords, such as `bbox`, a meaning of its own.
 #[test]
 #[ignore = "needs Pillow: Debian's python3-pil"]
 fn pillow_reads_pictures_with_all_settings() {

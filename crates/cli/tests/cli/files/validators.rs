@@ -1,5 +1,7 @@
 //! Files by the validators of others, which `tools/test --part validators` installs into the folder that `VALIDATORS` names.
 
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
@@ -128,4 +130,50 @@ fn ktx_parse_reads_textures() {
     folder.write("cut.ktx2", &whole[..whole.len() - 100]);
     let error = read("cut.ktx2").unwrap_err();
     assert!(error.contains("RangeError"), "{error}");
+}
+
+/// GDAL finds in a GeoTIFF above 4 GiB, in windows of all bands, the values that the same command writes to an .npy: horizons of
+/// noise, which deflate to little less. Needs 10 GB of disk.
+#[test]
+#[ignore = "writes 10 GB, and needs GDAL: tools/test --part validators"]
+fn above_4_gib_gdal_finds_all_bands() {
+    const SIDE: usize = 6000;
+    const AZIMUTHS: usize = 32;
+    const WINDOW: usize = 40;
+    let folder = Folder::new();
+    let mut state = 1_u64;
+    let mut noise = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 * 6e-6
+    };
+    let heights: Vec<u8> = (0..SIDE * SIDE).flat_map(|_| noise().to_le_bytes()).collect();
+    let shape = format!("({SIDE}, {SIDE})");
+    folder.write("field.npy", &formats::npy("<f4", false, &shape, &heights));
+    drop(heights);
+    let words = format!("field.npy --cell 1 --azimuths {AZIMUTHS} --lines 4 --fuse aimed-nearest");
+    done(&folder, &format!("horizon {words} -o large.tif --quiet"));
+    done(&folder, &format!("horizon {words} -o large.npy --quiet"));
+    let mut plain = File::open(folder.path("large.npy")).unwrap();
+    let values = (AZIMUTHS * SIDE * SIDE * 4) as u64;
+    let header = plain.metadata().unwrap().len() - values;
+    assert!(std::fs::metadata(folder.path("large.tif")).unwrap().len() > 1 << 32);
+    for band in 0..AZIMUTHS {
+        // Other tiles in each band, the last of all among them.
+        let place = [SIDE - WINDOW - 97 * band, (SIDE - WINDOW) * (band + 1) / AZIMUTHS];
+        let [row, col] = place;
+        let window = [col, row, WINDOW, WINDOW].map(|n| n.to_string());
+        let mut command = Command::new("gdal_translate");
+        command.args(["-q", "-of", "ENVI", "-b", &(band + 1).to_string(), "-srcwin"]).args(window);
+        output(&folder, command.args(["large.tif", "window.envi"])).unwrap();
+        let found = std::fs::read(folder.path("window.envi")).unwrap();
+        let mut expected = vec![0; 4 * WINDOW * WINDOW];
+        for (i, line) in expected.chunks_exact_mut(4 * WINDOW).enumerate() {
+            let first = (band * SIDE + row + i) * SIDE + col;
+            plain.seek(SeekFrom::Start(header + 4 * first as u64)).unwrap();
+            plain.read_exact(line).unwrap();
+        }
+        assert!(found == expected, "band {band}, {place:?}");
+        assert!(found.chunks_exact(4).any(|value| value != &found[..4]), "band {band}: one value");
+    }
 }
