@@ -414,15 +414,3 @@ pub(crate) fn settings(sweep: Option<&Sweep>, border: Border) -> Vec<(String, St
     }
     all
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_pad_of_the_lane_buffer_is_that_of_the_shaders() {
-        let shader = include_str!("../../../shaders_glsl/shared/sweep.glsl");
-        assert!(
-            shader
-                .contains(&format!("\nconst int LANE_BUFFER_PAD = {};\n", super::LANE_BUFFER_PAD))
-        );
-    }
-}
