@@ -60,7 +60,8 @@ const OPENNESS_HELP: &str = "\
 The mean over --azimuths of the zenith angle of the horizon: 90 degrees on flat ground, less in a valley, more on a \
 summit. Azimuths in which a grid point at the edge has no ground are left out.
 
-Differences from RVT: occluders at any distance count (RVT: 10 pixels); there are 32 azimuths (RVT: 16).
+Differences from RVT: occluders at any distance count (RVT: 10 pixels); there are 32 azimuths (RVT: 16). By default nothing \
+lies beyond the field (--border open), and horizons may be below the horizontal. gdaldem has no such map.
 
 Examples:
   ridgelight openness dem.tif -o openness.tif
