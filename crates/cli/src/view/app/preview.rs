@@ -23,7 +23,7 @@ use crate::render;
 use crate::setup::total_ns;
 
 /// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [5.5, 11.0, 22.0];
+const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
 /// The part of the slopes' time that is left where a camera draws a mesh.
 const WITH_MESH: f64 = 0.4;
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
