@@ -369,10 +369,9 @@ fn choices(result: &str) -> Result<String> {
          model of errors was not fitted on these pairs. {held} of {chosen} choices meet the goal ({share%1} %). {different} of them differ from \
          each other; {within_stated_bound} are within the bound that they state. ",
         refused,
-        " The rival is the cheapest setting \
-         that truly meets the goal, of all that a `trade` walk of {trade_seconds} s and the choices drew. Time over that of the \
-         rival: median {ratio_median:2}, 90th percentile {ratio_90:2}, worst {ratio_worst:2}; at most 1.3 in {within_1.3} of \
-         {ratios}.\n\n",
+        " Each choice is compared with the fastest setting that meets the goal, of all that a `trade` search of \
+         {trade_seconds} s and the choices drew. Time of the choice over that setting's: median {ratio_median:2}, 90th percentile \
+         {ratio_90:2}, worst {ratio_worst:2}; at most 1.3 in {within_1.3} of {ratios}.\n\n",
     ];
     figures.fill(&of, &text.concat())
 }
