@@ -136,7 +136,7 @@ fn ktx_parse_reads_textures() {
 /// noise, which deflate to little less. Needs 10 GB of disk.
 #[test]
 #[ignore = "writes 10 GB, and needs GDAL: tools/test --part validators"]
-fn above_4_gib_gdal_finds_all_bands() {
+fn above_4_gib_all_bands_are_found() {
     const SIDE: usize = 6000;
     const AZIMUTHS: usize = 32;
     const WINDOW: usize = 40;
