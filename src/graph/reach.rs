@@ -120,7 +120,7 @@ impl Pass {
             Reach::Quads(axis) => {
                 let [lane, lanes, marches] = rectangle.along(axis);
                 let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
-                shaders::HeightTranspose::groups([quads, marches, z])
+                shaders::HEIGHT_TRANSPOSE.groups([quads, marches, z])
             }
             Reach::Lines { axis, line_shift, .. } => {
                 let [_, lanes, marches] = rectangle.along(axis).map(u64::from);

@@ -60,6 +60,27 @@ pub struct Shader {
     pub constants: &'static [Constant],
     /// SPIR-V.
     pub words: &'static [u32],
+    /// Invocations of a workgroup along each axis, unless constants set them.
+    group_size: Option<[u32; 3]>,
+}
+
+impl Shader {
+    /// Invocations of a workgroup along each axis.
+    ///
+    /// # Panics
+    /// Where constants set them; at compile time in a constant.
+    pub(crate) const fn group_size(&self) -> [u32; 3] {
+        self.group_size.expect("constants set no workgroup size")
+    }
+
+    /// Workgroups for so many invocations along each axis.
+    ///
+    /// # Panics
+    /// As [`group_size`](Self::group_size).
+    pub(crate) fn groups(&self, invocations: [u32; 3]) -> [u32; 3] {
+        let size = self.group_size();
+        [0, 1, 2].map(|axis| invocations[axis].div_ceil(size[axis]))
+    }
 }
 
 /// A shader and a word for each of its specialisation constants, in order. Made only from the struct of that shader, so no
@@ -127,6 +148,7 @@ macro_rules! shader {
             },)*],
             constants: &[$($(Constant { id: $id, name: stringify!($field) },)*)?],
             words: words_at($first, $count),
+            group_size: shader!(@group $($x $y $z)?),
         };
 
         $(#[$doc])*
@@ -143,27 +165,14 @@ macro_rules! shader {
             type Push = $push;
         }
 
-        $(
-            impl $shape {
-                /// Invocations of a workgroup along each axis.
-                #[allow(dead_code, reason = "of most passes only `groups` is used")]
-                pub(crate) const GROUP_SIZE: [u32; 3] = [$x, $y, $z];
-
-                /// Workgroups for so many invocations along each axis.
-                #[allow(dead_code, reason = "some passes count workgroups, not invocations")]
-                pub(crate) fn groups(invocations: [u32; 3]) -> [u32; 3] {
-                    let [across, down, deep] = invocations;
-                    [across.div_ceil($x), down.div_ceil($y), deep.div_ceil($z)]
-                }
-            }
-        )?
-
         impl From<$shape> for Specialised {
             fn from(_of: $shape) -> Self {
                 Self { shader: &$constant, constants: vec![$($(_of.$field.word(),)*)?] }
             }
         }
     };
+    (@group) => { None };
+    (@group $x:literal $y:literal $z:literal) => { Some([$x, $y, $z]) };
     (@reads) => { false };
     (@writes) => { true };
 }

@@ -86,7 +86,7 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("LATTICE_SLOPES_F16", slopes_f16),
         ("LATTICE_SLOPES_F32", slopes_f32),
         // A word of the mask is eight columns of four rows.
-        ("LIGHT_GROUP_WORDS", shaders::SkyShade::GROUP_SIZE[1]),
+        ("LIGHT_GROUP_WORDS", shaders::SKY_SHADE.group_size()[1]),
         ("MOST_LEVEL", LONGEST.trailing_zeros()),
         ("POINT_GROUND", visible::GROUND),
         ("POINT_LOST", visible::LOST),
@@ -95,7 +95,7 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("RECEIVER_COSINE", Lit::Cosine as u32),
         ("RECEIVER_PLANE", Lit::Plane as u32),
         ("RECEIVER_SPECULAR", Lit::Specular as u32),
-        ("RESOLVE_GROUP_WORDS", shaders::LightResolve::GROUP_SIZE[1] / 4),
+        ("RESOLVE_GROUP_WORDS", shaders::LIGHT_RESOLVE.group_size()[1] / 4),
         ("SHAPE_DISC", Shape::Disc as u32),
         ("SHAPE_PATCH", Shape::Patch as u32),
         ("SHAPE_POINT", Shape::Point as u32),
@@ -138,9 +138,9 @@ fn numbers(folder: &Path, found: &mut Vec<(String, String, u32)>) {
 /// Passes that share their workgroups, or their counts, have workgroups of one size.
 #[test]
 fn passes_that_share_groups_have_one_size() {
-    let reductions = [shaders::ShadeReduce::GROUP_SIZE, shaders::VectorReduce::GROUP_SIZE];
-    assert_eq!(reductions, [shaders::HeightReduce::GROUP_SIZE; 2]);
-    assert_eq!(shaders::SunShade::GROUP_SIZE, shaders::SkyShade::GROUP_SIZE);
+    let reductions = [shaders::SHADE_REDUCE.group_size(), shaders::VECTOR_REDUCE.group_size()];
+    assert_eq!(reductions, [shaders::HEIGHT_REDUCE.group_size(); 2]);
+    assert_eq!(shaders::SUN_SHADE.group_size(), shaders::SKY_SHADE.group_size());
 }
 
 /// A new `const uint` or `const int` with a number is in `host`, or in the list of those that shaders alone use.

@@ -155,6 +155,25 @@ fn small_fields_have_more_segments_and_smaller_tiles_on_a_gpu() {
     }
 }
 
+/// A key light alone has segments for its own slices, not for `sun_azimuths`: half of them up to 12.5° wide.
+#[test]
+fn narrow_keys_have_segments_for_their_slices() {
+    let base = crate::on_gpu(Limits { memory_budget: 16 << 30, ..Limits::lavapipe() });
+    let limits = Limits { shared_bytes: 48 << 10, buffer_bytes: 1 << 30, ..base };
+    let segments = |degrees: f64, sun_azimuths: u32| {
+        let mut scene = scene(1024);
+        scene.lights.suns.clear();
+        scene.lights.keys.remove(0);
+        scene.lights.keys[0].width_rad = degrees.to_radians();
+        let plan = picture(&scene, &Quality { sun_azimuths, ..Quality::default() }, &limits);
+        let pass = plan.passes.iter().find(|p| p.name() == "shadow_sweep").expect("a sweep");
+        pass.constant("local_size_y").expect("a constant")
+    };
+    assert_eq!(segments(12.0, 32), segments(25.0, 16));
+    // Twice as many slices have fewer segments.
+    assert!(segments(25.0, 32) < segments(25.0, 16));
+}
+
 /// Lattices along both axes share the memory by what all azimuths along each need: none is cut for want of it.
 #[test]
 fn suns_have_one_batch_an_axis_on_a_gpu() {

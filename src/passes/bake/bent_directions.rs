@@ -27,7 +27,7 @@ pub(crate) fn plan(
         },
         part,
         "on the curved base, the direction to each visible point of the flat one",
-        shaders::BentDirections::groups([cols, rows, count]),
+        shaders::BENT_DIRECTIONS.groups([cols, rows, count]),
         &shaders::BentDirectionsPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -22,7 +22,7 @@ pub(crate) fn plan(
         shaders::EllipseFit { small: is_small, bent: is_bent },
         &format!("{base}rows {}..{}", rows.start, rows.end),
         "the ellipse of directions in which the sky is visible",
-        shaders::EllipseFit::groups([cols, height, 1]),
+        shaders::ELLIPSE_FIT.groups([cols, height, 1]),
         &shaders::EllipseFitPush {
             cols: cols as i32,
             rows: rows.end as i32,

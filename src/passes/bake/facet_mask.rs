@@ -23,7 +23,7 @@ pub(crate) fn plan(
         shaders::FacetMask { border: border as u32, most_steps: blocks.levels.most_steps() as i32 },
         &format!("layers {}..{}", layers.start, layers.end),
         "which triangles are visible from each direction",
-        shaders::FacetMask::groups([cells_x, cells_y, layers.end - layers.start]),
+        shaders::FACET_MASK.groups([cells_x, cells_y, layers.end - layers.start]),
         &shaders::FacetMaskPush {
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,

@@ -19,7 +19,7 @@ pub(crate) fn plan(
         shaders::FanWeights {},
         part,
         "the solid angle of each direction on the curved base",
-        shaders::FanWeights::groups([cols, rows, count]),
+        shaders::FAN_WEIGHTS.groups([cols, rows, count]),
         &shaders::FanWeightsPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -82,7 +82,7 @@ pub(crate) fn plan(
         },
         &part,
         why,
-        shaders::ScatterGather::groups([cols, rows, if sums { views } else { count }]),
+        shaders::SCATTER_GATHER.groups([cols, rows, if sums { views } else { count }]),
         &shaders::ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,
@@ -120,7 +120,7 @@ pub(crate) fn plan_nothing(
         shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
         "nothing",
         "no light: nothing is scattered",
-        shaders::ScatterGather::groups([cols, rows, views]),
+        shaders::SCATTER_GATHER.groups([cols, rows, views]),
         &shaders::ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -31,7 +31,7 @@ pub(crate) fn plan(
         },
         part,
         "the visible point of each grid point in each direction",
-        shaders::VisiblePoints::groups([cols, rows, count]),
+        shaders::VISIBLE_POINTS.groups([cols, rows, count]),
         &shaders::VisiblePointsPush {
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,

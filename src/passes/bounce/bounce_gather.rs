@@ -132,7 +132,7 @@ pub(crate) fn plan(
                     Receiver::Cosine => "in Legendre coefficients and three bands of the cosine",
                 }
             ),
-            shaders::BounceGather::groups([across, height, 1]),
+            shaders::BOUNCE_GATHER.groups([across, height, 1]),
             &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + march_samples * (4 + 16)),

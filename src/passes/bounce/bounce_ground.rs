@@ -37,7 +37,7 @@ impl BounceGround {
             shaders::BounceGround { grey: self.grey },
             &bounce.name,
             "so that one load reads height and exit radiance",
-            shaders::BounceGround::groups([cols, rows, 1]),
+            shaders::BOUNCE_GROUND.groups([cols, rows, 1]),
             &shaders::BounceGroundPush { cols: cols as i32, rows: rows as i32 },
             &[
                 ("heights", heights),

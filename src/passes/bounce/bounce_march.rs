@@ -34,7 +34,7 @@ pub(crate) fn plan(
             },
             &part.label(&bounce.name, "azimuths", &(0..azimuths), along),
             format!("{}, every visible interval along {count} azimuths", bounce.why),
-            shaders::BounceMarch::groups([across, height, 1]),
+            shaders::BOUNCE_MARCH.groups([across, height, 1]),
             &shaders::BounceMarchPush {
                 land: shaders::LandPush::of(field, &blocks.levels),
                 azimuths: azimuths as i32,

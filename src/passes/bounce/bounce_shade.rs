@@ -17,7 +17,7 @@ pub(crate) fn plan(
         shaders::BounceShade { node_stride: at.nodes.stride as i32 },
         &bounce.name,
         "mean radiance of the ground visible from nodes, times each texel's own share of ground",
-        shaders::BounceShade::groups([size[0], size[1], 1]),
+        shaders::BOUNCE_SHADE.groups([size[0], size[1], 1]),
         &shaders::BounceShadePush {
             cols: size[0] as i32,
             rows: size[1] as i32,

@@ -101,7 +101,7 @@ pub(crate) fn plan(
             },
             &format!("{part}{which}"),
             format!("{}, visible ground along {count} azimuths", bounce.why),
-            shaders::BounceWalk::groups([*across, *along, 1]),
+            shaders::BOUNCE_WALK.groups([*across, *along, 1]),
             &shaders::BounceWalkPush {
                 cols: cols as i32,
                 rows: rows as i32,

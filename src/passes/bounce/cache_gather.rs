@@ -26,7 +26,7 @@ pub(crate) fn plan(
         },
         &bounce.name,
         format!("{}, by the visibility cache of {count} azimuths", bounce.why),
-        shaders::CacheGather::groups([nodes_x, nodes_y, 1]),
+        shaders::CACHE_GATHER.groups([nodes_x, nodes_y, 1]),
         &shaders::CacheGatherPush {
             cols: size[0] as i32,
             rows: size[1] as i32,

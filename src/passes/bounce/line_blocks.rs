@@ -147,7 +147,7 @@ impl LineBlocks {
             },
             part,
             format!("{}, blocks along {count} azimuths", bounce.why),
-            shaders::LineBlocks::groups([batch.most_lines, steps.div_ceil(LONGEST), count]),
+            shaders::LINE_BLOCKS.groups([batch.most_lines, steps.div_ceil(LONGEST), count]),
             &shaders::LineBlocksPush {
                 cols: cols as i32,
                 rows: rows as i32,

@@ -15,7 +15,7 @@ pub(crate) fn plan(
         shaders::ShadeExpand { periodic: pyramid.periodic, grey: bounce.grey },
         &bounce.name,
         format!("{} levels of radiance at every texel, by B-splines", pyramid.levels()),
-        shaders::ShadeExpand::groups([cols, rows, pyramid.levels()]),
+        shaders::SHADE_EXPAND.groups([cols, rows, pyramid.levels()]),
         &shaders::ShadeExpandPush {
             cols: cols as i32,
             rows: rows as i32,

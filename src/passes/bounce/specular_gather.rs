@@ -72,7 +72,7 @@ pub(crate) fn plan(
                     "radiance towards the zenith"
                 }
             ),
-            shaders::SpecularGather::groups([cols, height, 1]),
+            shaders::SPECULAR_GATHER.groups([cols, height, 1]),
             &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),

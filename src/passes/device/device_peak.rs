@@ -4,7 +4,7 @@ use crate::graph::{Builder, Format, Limits, Owner, shaders};
 pub(crate) const SIDE: u32 = 512;
 /// Larger than the caches of most GPUs, and of most processors.
 const MOST_BYTES: [u64; 2] = [256 << 20, 64 << 20];
-const GROUP_SIZE: u64 = shaders::DevicePeak::GROUP_SIZE[0] as u64;
+const GROUP_SIZE: u64 = shaders::DEVICE_PEAK.group_size()[0] as u64;
 /// Copies of 16 bytes of an invocation.
 const COPIES: u64 = 8;
 const INVOCATIONS: [u64; 2] = [1 << 20, 1 << 18];

@@ -16,7 +16,7 @@ pub(crate) fn plan(
         shaders::EnvTables {},
         "",
         format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
-        shaders::EnvTables::groups([3, count, 1]),
+        shaders::ENV_TABLES.groups([3, count, 1]),
         &shaders::EnvTablesPush {
             height: environment.height() as i32,
             rows: rows_kept as i32,

@@ -46,7 +46,7 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
         },
         part,
         "the light's sum, coloured, into the picture",
-        shaders::LightResolve::groups([cols, rows, 1]),
+        shaders::LIGHT_RESOLVE.groups([cols, rows, 1]),
         &shaders::LightResolvePush {
             cols: cols as i32,
             rows: rows as i32,

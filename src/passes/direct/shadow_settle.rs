@@ -5,7 +5,7 @@ use crate::passes::shadows::{Shadows, Walked};
 use crate::scene::{Border, HeightField};
 
 /// Invocations of a workgroup: each is one azimuth of one texel.
-const INVOCATIONS: u32 = shaders::ShadowSettle::GROUP_SIZE[0];
+const INVOCATIONS: u32 = shaders::SHADOW_SETTLE.group_size()[0];
 /// Texels of a workgroup per four lanes: 16 march positions.
 const FOUR_TEXELS: u32 = 4 * 16;
 const MOST_FOURS: u32 = 8;

@@ -24,7 +24,7 @@ pub(crate) fn plan(
         },
         part,
         "texels that see all of a chord of the sun, or none of it",
-        shaders::ShadowShade::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SHADOW_SHADE.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &shaders::ShadowShadePush {
             cols: cols as i32,
             rows: rows as i32,

@@ -88,7 +88,7 @@ pub(crate) fn plan(
             (Some(_), None) => "uniform sky in closed form: no table",
             _ => "environment from its tables",
         },
-        shaders::SkyShade::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SKY_SHADE.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &push,
         &bound,
         axis.texels() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),

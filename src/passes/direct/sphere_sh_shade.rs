@@ -146,7 +146,7 @@ fn dispatch(
                 "the sphere light times the visibility across and up to it"
             }
         },
-        shaders::SphereShShade::groups([cols, rows, 1]),
+        shaders::SPHERE_SH_SHADE.groups([cols, rows, 1]),
         &shaders::SphereShShadePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],

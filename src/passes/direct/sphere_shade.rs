@@ -102,7 +102,7 @@ fn dispatch(
         },
         part,
         shading.why,
-        shaders::SphereShade::groups([cols, rows, 1]),
+        shaders::SPHERE_SHADE.groups([cols, rows, 1]),
         &shaders::SphereShadePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],

@@ -73,7 +73,7 @@ pub(crate) fn plan(
             Shape::Point => "a point: lit or not",
             Shape::Patch => "the part of its elevations above the horizon",
         },
-        shaders::SunShade::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SUN_SHADE.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &push,
         &bound,
         axis.texels()

@@ -21,7 +21,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
         shaders::DirtyList {},
         "",
         "light is summed only where a texel is marked",
-        shaders::DirtyList::groups([across, down, 1]),
+        shaders::DIRTY_LIST.groups([across, down, 1]),
         &shaders::DirtyListPush { cols, rows },
         &[("dirty_texels", dirty), ("edit_list", list)],
         8 * all,

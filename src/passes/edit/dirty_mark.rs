@@ -15,7 +15,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
         shaders::DirtyMark {},
         "",
         "texels whose own surface was edited; clears the mask of the last edit",
-        shaders::DirtyMark::groups([across, down, 1]),
+        shaders::DIRTY_MARK.groups([across, down, 1]),
         &shaders::DirtyMarkPush { cols, rows, first_col, first_row, last_col, last_row },
         &[("dirty_texels", dirty), ("edit_list", list)],
         4 * all,

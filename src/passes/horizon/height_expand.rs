@@ -13,7 +13,7 @@ pub(crate) fn plan(
         shaders::HeightExpand { periodic: pyramid.periodic },
         "",
         "so that a march reads levels like the field",
-        shaders::HeightExpand::groups([cols, rows, pyramid.levels()]),
+        shaders::HEIGHT_EXPAND.groups([cols, rows, pyramid.levels()]),
         &shaders::HeightExpandPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -22,7 +22,7 @@ pub(crate) fn plan(
         },
         axis.name(),
         "so that one fetch reads four neighbouring lanes",
-        shaders::HeightTranspose::groups([quads, axis.steps, 1]),
+        shaders::HEIGHT_TRANSPOSE.groups([quads, axis.steps, 1]),
         &shaders::HeightTransposePush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

@@ -27,7 +27,7 @@ pub(crate) fn plan(
             },
             &cut.label(part, "azimuths", &all, steps),
             format!("brute-force horizons of {count} azimuths along {}", axis.name()),
-            shaders::HorizonMarch::groups([lanes, height, count]),
+            shaders::HORIZON_MARCH.groups([lanes, height, count]),
             &shaders::MarchPush {
                 first_azimuth: few.start,
                 first: rows.start as i32,

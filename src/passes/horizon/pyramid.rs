@@ -60,7 +60,7 @@ impl<'a> Octave<'a> {
         for (first, number) in first_group.iter_mut().zip(numbers.clone()) {
             *first = groups;
             let [cols, rows] = pyramid.level(number).size;
-            let [across, down, _] = shaders::HeightReduce::groups([cols, rows, 1]);
+            let [across, down, _] = shaders::HEIGHT_REDUCE.groups([cols, rows, 1]);
             groups += (across * down) as i32;
         }
         let push = shaders::ReducePush {

@@ -53,7 +53,7 @@ pub(crate) fn plan(
             },
             &cut.label(part, "azimuths", &all, steps),
             format!("horizons of {count} azimuths, {} samples each", pyramid.samples()),
-            shaders::PyramidMarch::groups([lanes, height, 1]),
+            shaders::PYRAMID_MARCH.groups([lanes, height, 1]),
             &shaders::PyramidMarchPush {
                 lanes: axis.lanes as i32,
                 steps: axis.steps as i32,

@@ -32,7 +32,7 @@ pub(crate) fn plan(
         },
         part,
         "from the lines back to grid points",
-        shaders::SweepFuse::groups([axis.steps, axis.lanes.div_ceil(4), batch.count]),
+        shaders::SWEEP_FUSE.groups([axis.steps, axis.lanes.div_ceil(4), batch.count]),
         &shaders::SweepFusePush {
             cols: cols as i32,
             rows: rows as i32,

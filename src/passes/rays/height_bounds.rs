@@ -33,7 +33,7 @@ pub(crate) fn plan(
         shaders::HeightBounds { source: kind },
         format!("{part} level {level}").trim(),
         "so that rays above a block skip it",
-        shaders::HeightBounds::groups([across, down, 1]),
+        shaders::HEIGHT_BOUNDS.groups([across, down, 1]),
         &shaders::HeightBoundsPush {
             cells_x: cells_x as i32,
             cells_y: cells_y as i32,

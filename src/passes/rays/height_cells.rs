@@ -28,7 +28,7 @@ pub(crate) fn plan(
             Some(_) => "so that one fetch reads a cell; shading reads the normals of texels",
             None => "shading reads the normals of texels",
         },
-        shaders::HeightCells::groups([cols, rows, 1]),
+        shaders::HEIGHT_CELLS.groups([cols, rows, 1]),
         &shaders::HeightCellsPush {
             cols: cols as i32,
             rows: rows as i32,

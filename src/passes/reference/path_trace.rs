@@ -111,7 +111,7 @@ pub(crate) fn plan(
                 "{BATCH_PATHS} more paths from each of {count} texels: bounced light of up to {bounces} bounces"
             ),
         },
-        shaders::PathTrace::groups([cols, band.end - band.start, 1]),
+        shaders::PATH_TRACE.groups([cols, band.end - band.start, 1]),
         &shaders::PathTracePush {
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,

@@ -15,7 +15,7 @@ pub(crate) fn plan(
         shaders::EnvRotation {},
         sh.part(),
         format!("the environment around each row, up to Fourier order {}", sh.light_order - 1),
-        shaders::EnvRotation::groups([(sh.rows * count) as u32, 1, 1]),
+        shaders::ENV_ROTATION.groups([(sh.rows * count) as u32, 1, 1]),
         &shaders::EnvRotationPush {
             width: environment.width() as i32,
             rows: sh.rows as i32,

@@ -20,7 +20,7 @@ pub(crate) fn plan(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",
             environment.height()
         ),
-        shaders::EnvWedges::groups([kept, azimuths, 1]),
+        shaders::ENV_WEDGES.groups([kept, azimuths, 1]),
         &shaders::EnvWedgesPush {
             width: width as i32,
             rows: kept as i32,

@@ -43,7 +43,7 @@ pub(crate) fn plan(
             Lit::Cosine => "visibility times the light's matrix; a cosine of three bands",
             Lit::Specular => "visibility times the light's matrix; a Phong lobe of as many bands",
         },
-        shaders::ShShade::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SH_SHADE.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &shaders::ShShadePush {
             cols: cols as i32,
             rows: rows as i32,

@@ -55,7 +55,7 @@ pub(crate) fn plan(
             Wedges::Nlp => "visibility as SH, by Legendre coefficients",
             Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
         },
-        shaders::ShVisibility::groups([steps, lanes.div_ceil(4), 1]),
+        shaders::SH_VISIBILITY.groups([steps, lanes.div_ceil(4), 1]),
         &shaders::ShadePush::of(batch, cell_m),
         &bound,
         nodes * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),

@@ -40,7 +40,7 @@ pub(crate) fn plan(
         },
         "env",
         format!("visibility as SH, from a table of {0} × {0} wedges", table.side),
-        shaders::ShWedges::groups([steps, lanes.div_ceil(4), 1]),
+        shaders::SH_WEDGES.groups([steps, lanes.div_ceil(4), 1]),
         &shaders::ShWedgesPush {
             cols: cols as i32,
             rows: rows as i32,

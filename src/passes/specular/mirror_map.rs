@@ -48,7 +48,7 @@ impl MirrorMap {
             shaders::MirrorMap {},
             part,
             why,
-            shaders::MirrorMap::groups([self.stored, self.height, 1]),
+            shaders::MIRROR_MAP.groups([self.stored, self.height, 1]),
             &shaders::MirrorMapPush {
                 columns: self.columns as i32,
                 height: self.height as i32,

@@ -72,7 +72,7 @@ pub(crate) fn plan(
         },
         &outgoing.name,
         why,
-        shaders::SpecularExit::groups([cols, rows, 1]),
+        shaders::SPECULAR_EXIT.groups([cols, rows, 1]),
         &shaders::SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -16,7 +16,7 @@ pub(crate) fn plan(
         shaders::SpecularLight { border: border as u32, marches_rows: axis.marches_rows },
         "",
         "the unoccluded reflection, times the share that horizons leave free",
-        shaders::SpecularLight::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SPECULAR_LIGHT.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &shaders::SpecularLightPush {
             cols: cols as i32,
             rows: rows as i32,

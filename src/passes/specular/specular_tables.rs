@@ -99,7 +99,7 @@ impl SpecularTables {
                 "light below each of {} elevations in a lobe of exponent {}",
                 self.nodes, self.exponent
             ),
-            shaders::SpecularTables::groups([self.peaks.div_ceil(4), self.layers, 1]),
+            shaders::SPECULAR_TABLES.groups([self.peaks.div_ceil(4), self.layers, 1]),
             &shaders::SpecularTablesPush {
                 height: height as i32,
                 rows: kept as i32,

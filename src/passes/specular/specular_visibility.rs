@@ -14,7 +14,7 @@ pub(crate) fn plan(
         shaders::SpecularVisibility { order: specular.order as i32, grey: specular.grey },
         "",
         "visibility times the light, for bounces",
-        shaders::SpecularVisibility::groups([cols, rows, 1]),
+        shaders::SPECULAR_VISIBILITY.groups([cols, rows, 1]),
         &shaders::SpecularVisibilityPush { cols: cols as i32, rows: rows as i32 },
         &[
             ("visibility", visibility),

@@ -36,7 +36,7 @@ pub(crate) fn plan(
         },
         name,
         "the mean of the Phong lobe over the sun's disc, times its visible part",
-        shaders::SunSpecular::groups([axis.steps, axis.lanes.div_ceil(4), 1]),
+        shaders::SUN_SPECULAR.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &shaders::SunSpecularPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -63,7 +63,7 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
         shaders::MapDraw { grey: !map.has_colour, has_voids: map.has_voids },
         "",
         "radiance, tone-mapped for a screen",
-        shaders::MapDraw::groups([width, height, 1]),
+        shaders::MAP_DRAW.groups([width, height, 1]),
         &shaders::MapDrawPush {
             width: width as i32,
             height: height as i32,

@@ -19,7 +19,7 @@ pub(crate) fn plan(
         },
         suffix,
         "light without slopes, on the coarse grid",
-        shaders::PreviewGather::groups([coarse.size[0], coarse.size[1], 1]),
+        shaders::PREVIEW_GATHER.groups([coarse.size[0], coarse.size[1], 1]),
         &shaders::PreviewGatherPush {
             by_normal: of.by_normal,
             most: [r, g, b, of.ceiling],

@@ -21,7 +21,7 @@ pub(crate) fn plan(
         },
         "",
         "light of the coarse grids on the slopes of the fine one",
-        shaders::PreviewShade::groups([fine.size[0], fine.size[1], 1]),
+        shaders::PREVIEW_SHADE.groups([fine.size[0], fine.size[1], 1]),
         &shaders::PreviewShadePush {
             sky_by_normal: sky.by_normal,
             sun_by_normal: of_sun.by_normal,
