@@ -3,13 +3,17 @@
 // Reads: radiance, tone_steps (texel k: the least radiance of code k, NaN where no radiance has it), voids.
 // Writes: picture, four bytes per pixel.
 // One invocation is one pixel: the texel at its middle; the mean of PLACES x PLACES texels where a pixel covers
-// several; between texels where the map is smooth. Voids and texels outside count as the middle one.
+// several; between texels where the map is smooth. Voids count as the middle one, and so do texels outside in a mean;
+// between texels, those outside count as the nearest one.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool GREY = false;
 layout(constant_id = 1) const bool HAS_VOIDS = false;
+// Constants, as software drivers execute both sides of a branch.
+layout(constant_id = 2) const bool IS_SMOOTH = false;   // bilinear
+layout(constant_id = 3) const int PLACES = 1;           // along a side: a power of two
 
 layout(binding = 0) uniform texture2D radiance;
 layout(binding = 1) uniform texture2D tone_steps;
@@ -26,33 +30,24 @@ layout(push_constant) uniform MapDrawPush {
     float grid_points_per_pixel;
     uint swaps;               // not 0: BGRA order
     uint beyond;              // the pixel outside the field
-    int places;              // along a side: a power of two
-    uint is_smooth;           // not 0: bilinear, with one place
+    float exposure;
+    float shoulder;
 };
 
 float tone_step(uint code) {
     return texelFetch(tone_steps, ivec2(int(code), 0), 0).x;
 }
 
-// Linear light of sRGB 127.5/255, the threshold of code 128.
-const float HALF_CODE = 0.214041;
-const float SHOULDER = 0.8;
-const float REST = 1.0 - SHOULDER;
-
-// sRGB with the shoulder of a picture's tone gives a first guess, which the steps correct: they are those of any curve.
-uint code(float radiance, float exposure) {
-    float light = max(radiance * exposure, 0.0);
-    light = light <= SHOULDER ? light : 1.0 - REST * REST / (light - SHOULDER + REST);
-    float bright = 255.0 * (1.055 * pow(max(light, 1e-9), 1.0 / 2.4) - 0.055);
-    float guess = light <= 0.0031308 ? 255.0 * 12.92 * light : bright;
-    uint reached = guess >= 0.0 && guess <= 255.0 ? uint(guess + 0.5) : 0u;
-    while (reached > 0u && !(radiance >= tone_step(reached))) {
-        reached--;
-    }
-    while (reached < 255u && radiance >= tone_step(reached + 1u)) {
-        reached++;
-    }
-    return reached;
+// The curve of src/scene/tone.rs in f32, off by less than half a code: of the thresholds only the nearest one is uncertain.
+uint code(float radiance) {
+    float rest = 1.0 - shoulder;
+    float light = radiance * exposure;
+    light = light > 0.0 ? light : 0.0;
+    light = light <= shoulder ? light : 1.0 - rest * rest / (light - shoulder + rest);
+    float bright = 1.055 * pow(max(light, 1e-9), 1.0 / 2.4) - 0.055;
+    float guess = 255.0 * (light <= 0.0031308 ? 12.92 * light : bright);
+    uint below = uint(clamp(guess, 0.0, 254.0));
+    return below + uint(radiance >= tone_step(below + 1u));
 }
 
 bool is_shown(ivec2 at) {
@@ -77,10 +72,10 @@ vec2 place(vec2 point) {
 }
 
 vec3 mean(ivec2 pixel, vec3 middle) {
-    float share = 1.0 / float(places);
+    float share = 1.0 / float(PLACES);
     precise vec3 sum = vec3(0.0);
-    for (int i = 0; i < places * places; i++) {
-        ivec2 nth = ivec2(i % places, i / places);
+    for (int i = 0; i < PLACES * PLACES; i++) {
+        ivec2 nth = ivec2(i % PLACES, i / PLACES);
         precise vec2 point = vec2(pixel) + (vec2(nth) + 0.5) * share;
         sum += lit(ivec2(floor(place(point))), middle);
     }
@@ -88,24 +83,22 @@ vec3 mean(ivec2 pixel, vec3 middle) {
     return all;
 }
 
+// A texel, or the nearest one inside the field.
+vec3 nearest(ivec2 at, vec3 middle) {
+    at = clamp(at, ivec2(0), ivec2(cols - 1, rows - 1));
+    vec3 light = light_at(at);
+    return HAS_VOIDS && texelFetch(voids, at, 0).x != 0.0 ? middle : light;
+}
+
 vec3 between(vec2 there) {
+    vec3 middle = HAS_VOIDS ? light_at(ivec2(floor(there))) : vec3(0.0);
     precise vec2 from = there - 0.5;
     ivec2 at = ivec2(floor(from));
     precise vec2 part = from - vec2(at);
-    bool is_inner = !HAS_VOIDS && at.x >= 0 && at.y >= 0 && at.x + 1 < cols && at.y + 1 < rows;
-    vec3 a, b, c, d;
-    if (is_inner) {
-        a = light_at(at);
-        b = light_at(at + ivec2(1, 0));
-        c = light_at(at + ivec2(0, 1));
-        d = light_at(at + ivec2(1, 1));
-    } else {
-        vec3 middle = light_at(ivec2(floor(there)));
-        a = lit(at, middle);
-        b = lit(at + ivec2(1, 0), middle);
-        c = lit(at + ivec2(0, 1), middle);
-        d = lit(at + ivec2(1, 1), middle);
-    }
+    vec3 a = nearest(at, middle);
+    vec3 b = nearest(at + ivec2(1, 0), middle);
+    vec3 c = nearest(at + ivec2(0, 1), middle);
+    vec3 d = nearest(at + ivec2(1, 1), middle);
     precise vec3 above = a + (b - a) * part.x;
     precise vec3 below = c + (d - c) * part.x;
     precise vec3 all = above + (below - above) * part.y;
@@ -125,21 +118,20 @@ void main() {
         return;
     }
     vec3 light;
-    if (places == 1 && is_smooth != 0u) {
+    if (IS_SMOOTH) {
         light = between(there);
     } else {
         light = light_at(at);
-        if (places > 1) {
+        if (PLACES > 1) {
             light = mean(pixel, light);
         }
     }
-    float exposure = HALF_CODE / tone_step(128u);
-    uint red = code(light.r, exposure);
+    uint red = code(light.r);
     uint green = red;
     uint blue = red;
     if (!GREY) {
-        green = code(light.g, exposure);
-        blue = code(light.b, exposure);
+        green = code(light.g);
+        blue = code(light.b);
     }
     uint low = swaps != 0u ? blue : red;
     uint high = swaps != 0u ? red : blue;

@@ -13,7 +13,7 @@ layout(constant_id = 1) const bool ALBEDO_IS_MAP = false;
 layout(binding = 0) uniform texture2D normals;
 layout(binding = 1) uniform texture2D albedo;
 layout(binding = 2, rgba32f) uniform readonly image2D sky;
-layout(binding = 3, rgba32f) uniform readonly image2D sun;
+layout(binding = 3, r32f) uniform readonly image2D sun;
 layout(binding = 4, rgba32f) uniform writeonly image2D radiance;
 
 layout(push_constant) uniform PreviewShadePush {
@@ -51,9 +51,9 @@ void main() {
         a = ivec2(from);
         d = min(a + 1, last);
         part = from - vec2(a);
-        north = mix(imageLoad(sun, a).rgb, imageLoad(sun, ivec2(d.x, a.y)).rgb, part.x);
-        south = mix(imageLoad(sun, ivec2(a.x, d.y)).rgb, imageLoad(sun, d).rgb, part.x);
-        light += mix(north, south, part.y) * most.rgb * max(dot(normal, sun_by_normal.xyz), 0.0);
+        float upper = mix(imageLoad(sun, a).r, imageLoad(sun, ivec2(d.x, a.y)).r, part.x);
+        float lower = mix(imageLoad(sun, ivec2(a.x, d.y)).r, imageLoad(sun, d).r, part.x);
+        light += mix(upper, lower, part.y) * most.rgb * max(dot(normal, sun_by_normal.xyz), 0.0);
     }
     light *= ALBEDO_IS_MAP ? texelFetch(albedo, at, 0).rgb : colour.rgb;
     imageStore(radiance, at, vec4(light, 1.0));

@@ -5,7 +5,7 @@ use crate::{Result, passes};
 
 /// The pass of a [`Map`].
 ///
-/// Inputs, in order: "radiance"; "tone_steps" ([`Tone::steps`](crate::scene::Tone)); "voids" if there are any: 0 on
+/// Inputs, in order: "radiance"; "tone_steps" ([`Tone::steps`](crate::scene::Tone) of the map's tone); "voids" if there are any: 0 on
 /// ground, 1 in a void. Output: "picture", the four bytes of each pixel as one word, the first byte lowest, the last 255.
 /// Without voids, and from texels inside the field, it has the codes of `write_png`.
 ///

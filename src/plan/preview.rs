@@ -13,7 +13,7 @@ use crate::{Error, Result};
 /// `sky` is a scene on a coarse grid with all lights and its plan, with one image per light
 /// ([`Picture::light_layers`](super::Picture)). The first sun with irradiance, number n, is the sun, whose image is
 /// `direct.sun{n}`; all other lights count as sky. If there is a sun, `sun` is a scene on a grid of its own, with albedo 1
-/// and the sun alone, and its plan. All grids begin at the north-western corner; their cells have the same shape.
+/// and the sun alone, of any irradiance, and its plan. All grids begin at the north-western corner; their cells have the same shape.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
 /// of the fine grid if the scene has a map; four channels of unit normals: "normals" of the fine grid, the means of those that
@@ -67,7 +67,9 @@ pub fn preview(
     let sky_normals = image("sky_normals", Owner::Input, four, sky_grid);
     let of_sun = of_sun.map(|(light, (scene, plan))| {
         let grid = grid(&scene.field);
-        (light, plan, grid, image("sun_normals", Owner::Input, four, grid))
+        // Of the scene of its own, whose irradiance may be another.
+        let own = first(scene).map_or(light, |(_, own)| own);
+        ([light, own], plan, grid, image("sun_normals", Owner::Input, four, grid))
     });
     let mut in_sky = vec![
         ("normals", sky_normals),
@@ -81,30 +83,30 @@ pub fn preview(
     }
     let sky_light = image("sky", Owner::Internal, four, sky_grid);
     in_sky.push(("gathered", sky_light));
-    let of_sun = of_sun.map(|(light, plan, grid, normals)| {
-        let made = image("sun", Owner::Internal, four, grid);
+    let of_sun = of_sun.map(|(lights, plan, grid, normals)| {
+        let made = image("sun", Owner::Internal, one, grid);
         let bound = vec![
             ("normals", normals),
             ("coarse_radiance", image("sun_radiance", Owner::Input, of(plan), grid)),
-            ("gathered", made),
+            ("share", made),
         ];
-        (Unoccluded::of_sun(light), grid, is_grey(plan), bound, made)
+        (lights.map(Unoccluded::of_sun), grid, is_grey(plan), bound, made)
     });
     let radiance = image("radiance", Owner::Output, four, fine_grid);
 
     let of_sky = Unoccluded::of_sky(&sky.lights, sky.surface.border);
     let surface = (&sky.surface.albedo, is_grey(sky_plan), of_sun.is_some());
-    preview_gather::plan(&mut builder, sky_grid, (of_sky, "sky"), surface, &in_sky);
+    preview_gather::plan(&mut builder, sky_grid, (of_sky, "sky"), surface, false, &in_sky);
     let mut shaded = vec![("normals", normals)];
     shaded.extend(albedo.map(|albedo| ("albedo", albedo)));
     shaded.push(("sky", sky_light));
-    if let Some((unoccluded, grid, grey, bound, made)) = &of_sun {
+    if let Some(([_, unoccluded], grid, grey, bound, made)) = &of_sun {
         let surface = (&Albedo::Constant([1.0; 3]), *grey, false);
-        preview_gather::plan(&mut builder, *grid, (*unoccluded, "sun"), surface, bound);
+        preview_gather::plan(&mut builder, *grid, (*unoccluded, "sun"), surface, true, bound);
         shaded.push(("sun", *made));
     }
     shaded.push(("radiance", radiance));
-    let of_sun = of_sun.map(|(unoccluded, grid, ..)| (unoccluded, grid));
+    let of_sun = of_sun.map(|([unoccluded, _], grid, ..)| (unoccluded, grid));
     let albedo = &fine.surface.albedo;
     preview_shade::plan(&mut builder, fine_grid, (of_sky, sky_grid), of_sun, albedo, &shaded);
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), limits)

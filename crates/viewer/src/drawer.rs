@@ -7,7 +7,7 @@ use ridgelight::gpu::{
     Backed, Blocks, Frame, Headless, ImageArg, ImageState, Owned, Renderer, Timing, ViewOutputs,
     ViewRenderer, view_inputs,
 };
-use ridgelight::plan::{self, Map, View};
+use ridgelight::plan::{self, Map, Plan, View};
 use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 
@@ -31,30 +31,30 @@ impl Drawer {
     pub fn new(
         gpu: &mut Headless,
         viewpoint: Viewpoint<'_>,
-        (tone, voids, swaps): (Tone, Option<&[bool]>, bool),
+        (voids, swaps): (Option<&[bool]>, bool),
     ) -> Result<Self> {
         Ok(match viewpoint {
-            Viewpoint::Map(map) => Self::Map(Box::new(MapDrawer::new(gpu, map, tone, voids)?)),
-            Viewpoint::Camera(view) => {
+            Viewpoint::Map(map) => Self::Map(Box::new(MapDrawer::new(gpu, map, voids)?)),
+            Viewpoint::Camera(view, _) => {
                 Self::View(Box::new(ViewDrawer::new(gpu, view, voids, swaps)?))
             }
         })
     }
 
     /// Whether it can draw this viewpoint as it is.
-    pub fn fits(&self, viewpoint: Viewpoint<'_>) -> bool {
+    pub fn fits(&self, gpu: &Headless, viewpoint: Viewpoint<'_>) -> bool {
         match (self, viewpoint) {
-            (Self::Map(drawer), Viewpoint::Map(map)) => drawer.fits(map),
-            (Self::View(drawer), Viewpoint::Camera(view)) => drawer.view.is_shaped_like(view),
+            (Self::Map(drawer), Viewpoint::Map(map)) => drawer.fits(gpu, map),
+            (Self::View(drawer), Viewpoint::Camera(view, _)) => drawer.view.is_shaped_like(view),
             _ => false,
         }
     }
 
-    /// Changes the tone; waits.
-    pub fn set_tone(&mut self, gpu: &mut Headless, tone: Tone) -> Result<()> {
-        match self {
-            Self::Map(drawer) => drawer.set_tone(gpu, tone),
-            Self::View(_) => Ok(()),
+    /// Takes the viewpoint's tone; waits where it is another.
+    pub fn set_tone(&mut self, gpu: &mut Headless, viewpoint: Viewpoint<'_>) -> Result<()> {
+        match (self, viewpoint) {
+            (Self::Map(drawer), Viewpoint::Map(map)) => drawer.set_tone(gpu, map.tone),
+            _ => Ok(()),
         }
     }
 
@@ -64,13 +64,13 @@ impl Drawer {
         gpu: &Headless,
         commands: vk::CommandBuffer,
         slot: usize,
-        (frame, viewpoint, exposure): (&Frame, Viewpoint<'_>, f32),
+        (frame, viewpoint): (&Frame, Viewpoint<'_>),
     ) -> Result<()> {
         match (self, viewpoint) {
             (Self::Map(drawer), Viewpoint::Map(map)) => {
                 drawer.record(gpu, commands, slot, (map, frame))
             }
-            (Self::View(drawer), Viewpoint::Camera(view)) => {
+            (Self::View(drawer), Viewpoint::Camera(view, exposure)) => {
                 drawer.record(commands, slot, (view, exposure), frame)
             }
             _ => Err(Error::setting("viewpoint", "another", "the one that was prepared")),
@@ -166,6 +166,7 @@ impl ViewDrawer {
 pub(super) struct MapDrawer {
     renderer: Renderer,
     map: Map,
+    /// Of the steps.
     tone: Tone,
     steps: Owned,
     voids: Option<Owned>,
@@ -173,7 +174,7 @@ pub(super) struct MapDrawer {
 }
 
 impl MapDrawer {
-    pub fn new(gpu: &mut Headless, map: &Map, tone: Tone, voids: Option<&[bool]>) -> Result<Self> {
+    pub fn new(gpu: &mut Headless, map: &Map, voids: Option<&[bool]>) -> Result<Self> {
         let plan = plan::map(map, &gpu.report().limits)?;
         let resource = |name: &str| {
             let id = plan.find(name)?;
@@ -189,7 +190,7 @@ impl MapDrawer {
             Ok(())
         });
         let filled = filled.and_then(|()| {
-            gpu.upload(&made[0], &tone.steps())?;
+            gpu.upload(&made[0], &map.tone.steps())?;
             match (made.get(2), voids) {
                 (Some(image), Some(voids)) => {
                     let marks: Vec<f32> = voids.iter().map(|v| f32::from(u8::from(*v))).collect();
@@ -208,13 +209,18 @@ impl MapDrawer {
         }
         let mut made = made.into_iter();
         let [steps, picture] = [(); 2].map(|()| made.next().expect("made above"));
-        Ok(Self { renderer, map: *map, tone, steps, voids: made.next(), picture })
+        let (map, tone) = (*map, map.tone);
+        Ok(Self { renderer, map, tone, steps, voids: made.next(), picture })
     }
 
     /// Whether it can draw a map as it is.
-    pub fn fits(&self, map: &Map) -> bool {
-        let of = |m: &Map| (m.field, m.has_colour, m.has_voids, m.size);
-        of(&self.map) == of(map)
+    pub fn fits(&self, gpu: &Headless, map: &Map) -> bool {
+        let own = self.renderer.plan();
+        plan::map(map, &gpu.report().limits).is_ok_and(|plan| {
+            let constants =
+                |plan: &Plan| plan.passes.iter().map(|p| p.constants.clone()).collect::<Vec<_>>();
+            plan.resources == own.resources && constants(&plan) == constants(own)
+        })
     }
 
     /// Changes the tone; waits.

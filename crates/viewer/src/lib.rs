@@ -20,7 +20,6 @@ use ridgelight::gpu::{
     Frame, Headless, HeadlessOptions, ImageArg, SurfaceSource, Timing, Work, failed,
 };
 use ridgelight::plan::{Map, Plan, Rectangle, View};
-use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 
 use chain::Chain;
@@ -53,8 +52,8 @@ pub struct Screen {
 pub enum Viewpoint<'a> {
     /// From straight above, byte for byte as in a PNG; the byte order is [`Screen::swaps`].
     Map(&'a Map),
-    /// From a camera.
-    Camera(&'a View),
+    /// From a camera, with the exposure of [`Tone::picture`](ridgelight::scene::Tone::picture).
+    Camera(&'a View, f32),
 }
 
 /// A part of a picture: a frame, how it is lit, and where it is shown.
@@ -74,8 +73,6 @@ pub struct Pane<'a> {
 /// Options of one picture, besides its panes.
 #[derive(Clone, Copy, Debug)]
 pub struct PresentOptions<'a> {
-    /// Tone curve of radiance.
-    pub tone: Tone,
     /// The field's voids, if any.
     pub voids: Option<&'a [bool]>,
     /// Drawn over the picture.

@@ -85,16 +85,21 @@ impl Screen {
         swaps: bool,
     ) -> Result<()> {
         let fit = self.drawers.len() == panes.len()
-            && self.drawers.iter().zip(panes).all(|(drawer, pane)| drawer.fits(pane.viewpoint));
+            && self
+                .drawers
+                .iter()
+                .zip(panes)
+                .all(|(drawer, pane)| drawer.fits(&self.gpu, pane.viewpoint));
         if !fit {
             self.wait()?;
             self.drawers.drain(..).for_each(|old| old.end(&mut self.gpu));
             for pane in panes {
-                let of_all = (options.tone, options.voids, swaps);
+                let of_all = (options.voids, swaps);
                 self.drawers.push(Drawer::new(&mut self.gpu, pane.viewpoint, of_all)?);
             }
         }
-        self.drawers.iter_mut().try_for_each(|drawer| drawer.set_tone(&mut self.gpu, options.tone))
+        let mut of_panes = self.drawers.iter_mut().zip(panes);
+        of_panes.try_for_each(|(drawer, pane)| drawer.set_tone(&mut self.gpu, pane.viewpoint))
     }
 
     pub(super) fn record(
@@ -110,7 +115,7 @@ impl Screen {
                 self.copy_heights(commands, (from.buffer, at), pane.frame);
             }
             record_work(pane.frame, commands, slot, (pane.work, &[]))?;
-            let shown = (&*pane.frame, pane.viewpoint, options.tone.exposure);
+            let shown = (&*pane.frame, pane.viewpoint);
             self.drawers[n].record(&self.gpu, commands, slot, shown)?;
         }
         self.fill(slot, image, panes, options)?;
@@ -364,7 +369,7 @@ impl Pane<'_> {
     fn size(&self) -> [u32; 2] {
         match self.viewpoint {
             Viewpoint::Map(map) => map.size,
-            Viewpoint::Camera(view) => view.size,
+            Viewpoint::Camera(view, _) => view.size,
         }
     }
 }
@@ -394,7 +399,7 @@ fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
     let [width, height] = pane.size();
     let is_ordered = match pane.viewpoint {
         Viewpoint::Map(map) => map.swaps == swaps,
-        Viewpoint::Camera(_) => true,
+        Viewpoint::Camera(..) => true,
     };
     if pane.left.checked_add(width).is_none_or(|end| end > size[0]) || height > size[1] {
         let found = format!("{width} × {height} from column {}", pane.left);

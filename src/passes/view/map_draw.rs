@@ -1,4 +1,5 @@
 use crate::graph::{Builder, ResourceId, shaders};
+use crate::scene::Tone;
 use crate::{Error, Result};
 
 /// The part of a lit field that a screen shows from above, north up, and its scale.
@@ -19,6 +20,8 @@ pub struct Map {
     pub grid_points_per_pixel: f32,
     /// Whether pixels between the centres of texels have light between theirs (bilinear), below 2 texels per pixel.
     pub is_smooth: bool,
+    /// How radiance becomes codes; the exposure is 0 or at least 1e-30.
+    pub tone: Tone,
     /// Whether the order of a pixel's four bytes is B, G, R, A instead of R, G, B, A.
     pub swaps: bool,
 }
@@ -51,6 +54,13 @@ impl Map {
                 "a number from 0.001 to 1000",
             ));
         }
+        let Tone { exposure, shoulder } = self.tone;
+        let is_exposure = exposure == 0.0 || (1e-30..=f32::MAX).contains(&exposure);
+        if !is_exposure || !(0.0..=1.0).contains(&shoulder) {
+            let found = format!("exposure {exposure}, shoulder {shoulder}");
+            let expected = "an exposure of 0 or at least 1e-30, a shoulder from 0 to 1";
+            return Err(Error::setting("map: tone", found, expected));
+        }
         Ok(())
     }
 }
@@ -60,7 +70,12 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
     let [width, height] = map.size;
     let pixels = u64::from(width) * u64::from(height);
     builder.pass(
-        shaders::MapDraw { grey: !map.has_colour, has_voids: map.has_voids },
+        shaders::MapDraw {
+            grey: !map.has_colour,
+            has_voids: map.has_voids,
+            is_smooth: map.is_smooth && map.places() == 1,
+            places: map.places() as i32,
+        },
         "",
         "radiance, tone-mapped for a screen",
         shaders::MAP_DRAW.groups([width, height, 1]),
@@ -74,8 +89,8 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
             grid_points_per_pixel: map.grid_points_per_pixel,
             swaps: u32::from(map.swaps),
             beyond: u32::from_le_bytes(Map::BEYOND),
-            places: map.places() as i32,
-            is_smooth: u32::from(map.is_smooth),
+            exposure: map.tone.exposure,
+            shoulder: map.tone.shoulder,
         },
         bound,
         pixels * if map.has_colour { 20 } else { 8 },

@@ -8,6 +8,7 @@ pub(crate) fn plan(
     coarse: Grid,
     (of, suffix): (Unoccluded, &str),
     (albedo, grey, without_sun): (&Albedo, bool, bool),
+    is_share: bool,
     bound: &[(&str, ResourceId)],
 ) {
     let [r, g, b] = of.most;
@@ -16,6 +17,7 @@ pub(crate) fn plan(
             grey,
             without_sun,
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
+            is_share,
         },
         suffix,
         "light without slopes, on the coarse grid",

@@ -22,7 +22,7 @@ fn light(tone: Tone, count: usize) -> Vec<[f32; 3]> {
 /// The device's codes.
 fn drawn(
     device: &mut Device,
-    (map, tone): (&Map, Tone),
+    map: &Map,
     light: &[[f32; 3]],
     voids: Option<&[bool]>,
 ) -> Vec<[u8; 4]> {
@@ -36,7 +36,7 @@ fn drawn(
     };
     let marks: Option<Vec<f32>> =
         voids.map(|v| v.iter().map(|v| f32::from(u8::from(*v))).collect());
-    let steps = tone.steps();
+    let steps = map.tone.steps();
     let mut contents: Vec<&[f32]> = vec![&radiance, &steps];
     contents.extend(marks.as_deref());
     let mut frame = gpu.frame(plan, &contents).expect("a frame");
@@ -58,6 +58,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         corner: [0.0; 2],
         grid_points_per_pixel: 1.0,
         is_smooth: false,
+        tone: Tone::default(),
         swaps: false,
     };
     let grey = Map { has_colour: false, ..at_once };
@@ -73,20 +74,24 @@ fn maps_match_the_cpu_reference_to_the_bit() {
     let farther = Map { grid_points_per_pixel: 3.3, size: [13, 9], ..near };
     let smooth = Map { is_smooth: true, ..near };
     let voids: Vec<bool> = (0..37 * 23).map(|i| i % 11 == 3).collect();
-    for (map, exposure) in
-        [(at_once, 1.0), (grey, 0.0), (near, 3.7), (far, 1e-3), (farther, 1.3), (smooth, 0.6)]
-    {
-        let tone = Tone::picture(exposure);
+    let smooth_ground = Map { has_voids: false, ..smooth };
+    let tones = [1.0, 0.0, 3.7, 1e-3, 1e30, 1e-30, 0.6, 1.0].map(Tone::picture);
+    let clips = |exposure| Tone { exposure, shoulder: 1.0 };
+    let maps = [at_once, grey, near, far, grey, grey, smooth, smooth_ground];
+    let with_tones = maps.into_iter().zip(tones);
+    for (map, tone) in with_tones.chain([(farther, clips(1.3)), (at_once, clips(0.7))]) {
+        let map = Map { tone, ..map };
         let mut light = light(tone, 37 * 23);
         if !map.has_colour {
             light.iter_mut().for_each(|c| *c = [c[0]; 3]);
         }
         let voids = map.has_voids.then_some(voids.as_slice());
-        let want = map_draw(&map, &light, voids, tone);
-        let got = drawn(&mut device, (&map, tone), &light, voids);
+        let want = map_draw(&map, &light, voids);
+        let got = drawn(&mut device, &map, &light, voids);
         assert!(got == want, "{map:?}: {} pixels differ", differing(&got, &want));
         // The comparison can fail.
-        let brighter = map_draw(&map, &light, voids, Tone::picture(1.1 * exposure + 0.1));
+        let brighter = Map { tone: Tone { exposure: 1.1 * tone.exposure + 0.1, ..tone }, ..map };
+        let brighter = map_draw(&brighter, &light, voids);
         assert!(differing(&brighter, &want) > 10, "{map:?}");
     }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Align2, FontId, ProgressBar, Rect, Vec2, pos2};
 use ridgelight::gpu::HeadlessOptions;
-use ridgelight::scene::{Quality, Scene, Tone};
+use ridgelight::scene::{Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_viewer::{PresentOptions, Screen};
@@ -201,7 +201,7 @@ impl Opened {
         });
         self.screen.set_textures(textures);
         let overlay = self.gui.overlay();
-        let options = PresentOptions { tone: Tone::picture(1.0), voids: None, overlay, keeps };
+        let options = PresentOptions { voids: None, overlay, keeps };
         let done = self.screen.draw(&mut [], &options)?;
         Ok(done.map(|done| (size, done.pixels.unwrap_or_default())))
     }

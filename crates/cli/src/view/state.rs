@@ -306,7 +306,7 @@ impl State {
 
     /// The map section in a picture of a size.
     pub fn map(&self, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
-        self.viewpoint.map(&self.scene.field, size, swaps, has_colour)
+        self.viewpoint.map(&self.scene.field, (size, swaps, has_colour), self.tone())
     }
 
     /// A camera view of a plan's light, if there is a camera; of the full scene or of one in blocks; on the mesh of a moving

@@ -1,15 +1,9 @@
 //! A shaded field from above, as displayed on a screen.
 
 use ridgelight::plan::Map;
-use ridgelight::scene::Tone;
 
 /// The four bytes of each pixel, row after row; `shaded` (radiance) and `voids` are the field's, one per grid point.
-pub fn map_draw(
-    map: &Map,
-    shaded: &[[f32; 3]],
-    voids: Option<&[bool]>,
-    tone: Tone,
-) -> Vec<[u8; 4]> {
+pub fn map_draw(map: &Map, shaded: &[[f32; 3]], voids: Option<&[bool]>) -> Vec<[u8; 4]> {
     let [width, height] = map.size;
     // All in f32, as on the device: both must find the same grid points for a pixel.
     let place = |corner: f32, point: f32, count: u32| {
@@ -28,12 +22,16 @@ pub fn map_draw(
         let there = places([x as f32 + 0.5, y as f32 + 0.5]);
         let middle = light(there)?;
         let or_middle = |there| light(there).unwrap_or(middle);
+        let nearest = |[col, row]: [f32; 2]| {
+            let last = map.field.map(|count| (count - 1) as f32);
+            or_middle([col.clamp(0.0, last[0]), row.clamp(0.0, last[1])])
+        };
         let shown = match places_of(map) {
-            1 if map.is_smooth => between(there, or_middle),
+            1 if map.is_smooth => between(there, nearest),
             1 => middle,
             count => mean(count, |col, row| or_middle(places([x as f32 + col, y as f32 + row]))),
         };
-        let [r, g, b] = shown.map(|light| tone.code(light));
+        let [r, g, b] = shown.map(|light| map.tone.code(light));
         Some(if map.swaps { [b, g, r, 255] } else { [r, g, b, 255] })
     };
     let row = |y: u32| (0..width).map(move |x| pixel(x, y).unwrap_or(Map::BEYOND));

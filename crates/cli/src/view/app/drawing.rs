@@ -467,12 +467,14 @@ impl OpenWindow {
                 frame,
                 heights: *heights,
                 work: if n == at_ours { work } else { Work::Passes(passes) },
-                viewpoint: view.as_ref().map_or(Viewpoint::Map(map), Viewpoint::Camera),
+                viewpoint: view
+                    .as_ref()
+                    .map_or(Viewpoint::Map(map), |view| Viewpoint::Camera(view, map.tone.exposure)),
                 left: *left,
             });
         }
         let overlay = self.gui.overlay();
-        let options = PresentOptions { tone: state.tone(), voids: field.voids(), overlay, keeps };
+        let options = PresentOptions { voids: field.voids(), overlay, keeps };
         let Some(mut done) = self.screen.draw(&mut panes, &options)? else { return Ok(None) };
         if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));

@@ -101,7 +101,9 @@ impl Level {
         self.is_light_new |= has_new_light;
         self.blocks.take_lights(&state.scene, &mut self.scene);
         if self.of == SUN {
-            let suns = first_sun(&self.scene).map(|(_, sun)| *sun).into_iter().collect();
+            // Without colour its images have one channel.
+            let grey = |(_, sun): (usize, &Sun)| Sun { irradiance: [1.0; 3], ..*sun };
+            let suns = first_sun(&self.scene).map(grey).into_iter().collect();
             self.scene.lights = Lights { suns, ..Lights::default() };
         }
         self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
@@ -149,11 +151,13 @@ impl Level {
         self.runs += 1;
         let lit = self.lit.as_mut().expect("planned");
         let count = lit.plan().passes.len();
-        // The light that slopes borrow is new in each frame.
-        let has_new_heights_alone =
-            self.are_heights_new && !self.is_light_new && borrowed.is_empty();
-        let passes =
-            if has_new_heights_alone { after_new_heights(lit) } else { (0..count).collect() };
+        let passes = match (self.are_heights_new, self.is_light_new) {
+            // The light that slopes borrow is new in each frame.
+            (true, false) if borrowed.is_empty() => after_new_heights(lit),
+            // A sun without tables.
+            (false, _) if self.of == SUN => lit.renderer().passes_after(&[]),
+            _ => (0..count).collect(),
+        };
         let field = &self.scene.field;
         let heights = self.are_heights_new.then(|| (field.heights_m(), whole(field)));
         let slot = screen.light(lit, heights, (Work::Passes(&passes), borrowed))?;

@@ -192,8 +192,9 @@ impl Preview {
             true => String::new(),
             false => format!(", sun of {sun}"),
         };
-        let error =
-            self.error.map_or_else(String::new, |e| format!(", RMSE about {:.1} %", 100.0 * e));
+        let error = self
+            .error
+            .map_or_else(String::new, |e| format!(", RMSE {:.1} % at the last rest", 100.0 * e));
         Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
     }
 

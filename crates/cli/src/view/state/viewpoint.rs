@@ -3,7 +3,7 @@
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::plan::{Limits, Map, Plan, View, ViewOptions};
-use ridgelight::scene::{Camera, HeightField, Lens, Scene};
+use ridgelight::scene::{Camera, HeightField, Lens, Scene, Tone};
 
 use super::hundredths;
 use crate::render::camera::{PLINTH, plinth};
@@ -41,7 +41,12 @@ pub struct Viewpoint {
 
 impl Viewpoint {
     /// The visible section in a picture of a size.
-    pub fn map(&self, field: &HeightField, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
+    pub fn map(
+        &self,
+        field: &HeightField,
+        (size, swaps, has_colour): ([u32; 2], bool, bool),
+        tone: Tone,
+    ) -> Map {
         let Place { grid_points_per_pixel, .. } = self.place(field, size);
         Map {
             field: [field.cols() as u32, field.rows() as u32],
@@ -51,6 +56,7 @@ impl Viewpoint {
             corner: self.corner(field, size).map(|c| c as f32),
             grid_points_per_pixel: grid_points_per_pixel as f32,
             is_smooth: false,
+            tone,
             swaps,
         }
     }

@@ -37,7 +37,7 @@ fn write_grid(folder: &Folder, name: &str, size: [usize; 2], salt: usize) {
 }
 
 /// Absolute heights; whole numbers are exact in a field.
-pub(super) fn absolute(field: &HeightField) -> Vec<f32> {
+pub fn absolute(field: &HeightField) -> Vec<f32> {
     field.heights_m().iter().map(|h| (field.base_m() + f64::from(*h)) as f32).collect()
 }
 

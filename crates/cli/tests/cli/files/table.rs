@@ -11,8 +11,8 @@ struct Row {
     heights: &'static str,
     nodata: &'static str,
     unit: &'static str,
-    /// What tests compare with GDAL's reading, functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs, or with the arrays
-    /// that NumPy wrote, functions `numpy_...` of python.rs.
+    /// What tests compare with GDAL's reading, functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs, with the arrays
+    /// that NumPy wrote, functions `numpy_...` of python.rs, or with those of OpenEXR, validators.rs.
     compared: &'static str,
 }
 
@@ -64,7 +64,7 @@ const ROWS: [Row; 7] = [
         heights: "the channel `height`, `elevation`, `Z`, `Y` or `R`, or the only one",
         nodata: "no",
         unit: "metres",
-        compared: "no",
+        compared: "values",
     },
     Row {
         file: "`.png`",
@@ -79,7 +79,7 @@ const ROWS: [Row; 7] = [
 fn table() -> String {
     let files = formats::height_files();
     let folder = tempfile::tempdir().unwrap();
-    let names = "file | heights | cell size | position | reference system | no data | unit of height | compared with GDAL or NumPy";
+    let names = "file | heights | cell size | position | reference system | no data | unit of height | compared with GDAL, NumPy or OpenEXR";
     let mut table = format!("\n| {names} |\n|{}\n", "---|".repeat(8));
     for row in &ROWS {
         let utm = include_bytes!("../../../../../tests/files/gdal/utm.tif");
