@@ -6,6 +6,7 @@ mod level;
 mod overlay;
 mod preview;
 mod saving;
+mod sides;
 mod steps;
 
 use std::collections::VecDeque;

@@ -4,7 +4,6 @@ use egui::{
     Align2, Color32, ComboBox, FontId, Frame, Margin, Pos2, Rect, RichText, ScrollArea, Sense,
     Slider, Stroke, Ui, pos2, vec2,
 };
-use ridgelight::plan::Plan;
 use ridgelight::scene::{Audience, Setting, Values};
 
 use super::gui::{ACCENT, FAINT, GROUND, INK, PAPER};
@@ -33,7 +32,7 @@ pub struct Panel {
 
 impl Panel {
     /// Shows the panel; nothing where it is hidden.
-    pub fn show(&mut self, ui: &mut Ui, state: &State, (plan, figures): (&Plan, &Figures)) {
+    pub fn show(&mut self, ui: &mut Ui, state: &State, figures: &Figures) {
         if state.text() == Text::Nothing {
             return;
         }
@@ -45,7 +44,7 @@ impl Panel {
                 // An area otherwise begins with a height of its own.
                 ui.set_max_height(height.max(0.0));
                 let scroll = ScrollArea::vertical();
-                scroll.show(ui, |ui| self.content(ui, state, (plan, figures)));
+                scroll.show(ui, |ui| self.content(ui, state, figures));
             });
         });
         if let Some(message) = &state.message {
@@ -53,7 +52,7 @@ impl Panel {
         }
     }
 
-    fn content(&mut self, ui: &mut Ui, state: &State, (plan, figures): (&Plan, &Figures)) {
+    fn content(&mut self, ui: &mut Ui, state: &State, figures: &Figures) {
         ui.horizontal(|ui| {
             for (word, hint, change) in [
                 ("Picture", "Saves the picture, as `render` does (P)", Change::Key("p")),
@@ -90,7 +89,7 @@ impl Panel {
         plain.iter().for_each(|of| self.setting(ui, of));
         ui.separator();
         // Below the settings, which stay in place while the number of lines changes.
-        for line in state.lines_beside_widgets(plan, figures) {
+        for line in state.lines_beside_widgets(figures) {
             ui.monospace(line);
         }
         bars(ui, figures);
@@ -98,7 +97,7 @@ impl Panel {
         for line in state.lines_of_progress(figures) {
             ui.monospace(line.trim_start());
         }
-        for note in state.notes(plan) {
+        for note in state.notes(figures) {
             ui.label(RichText::new(note).color(FAINT));
         }
         if ui.ctx().egui_wants_keyboard_input() {

@@ -37,8 +37,10 @@ pub enum Step {
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
     /// Previews slow light from here on, as without a script; with numbers all light, and on grids of blocks of so many
-    /// grid points: sky, sun, slopes.
-    Preview(Option<[usize; 3]>),
+    /// grid points: sky, sun, slopes, while input goes on; and at rest, where there are six numbers.
+    Preview(Option<[Option<[usize; 3]>; 2]>),
+    /// Waits for the preview at rest.
+    Finer,
     /// Draws until the light is the full one.
     Rest,
     /// Waits for input until this file exists, as without a script.
@@ -84,7 +86,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        command, places, shown, paths, preview, rest, report, wait, opening or patience, with its values"
+                        command, places, shown, paths, preview, finer, rest, report, wait, opening or patience, with its values"
                         .into(),
             }
         })?);
@@ -112,13 +114,11 @@ fn step(line: &str) -> Option<Step> {
         ["size", size] => Step::Size(pair(size)?.map(|v| v as u32)),
         ["lose"] => Step::Lose,
         ["preview"] => Step::Preview(None),
-        ["preview", sides] => {
-            let sides: Vec<usize> =
-                sides.split(',').map(|n| n.parse().ok()).collect::<Option<_>>()?;
-            let &[sky, sun, slopes] = sides.as_slice() else { return None };
-            let is_right = slopes > 0 && sky >= slopes && sun >= slopes;
-            Step::Preview(Some(is_right.then_some([sky, sun, slopes])?))
+        ["preview", sides] => Step::Preview(Some([Some(grids(sides)?), None])),
+        ["preview", sides, at_rest] => {
+            Step::Preview(Some([Some(grids(sides)?), Some(grids(at_rest)?)]))
         }
+        ["finer"] => Step::Finer,
         ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
         ["scene", file] => Step::Scene(file.into()),
@@ -137,6 +137,13 @@ fn step(line: &str) -> Option<Step> {
         }
         _ => return None,
     })
+}
+
+/// Sides of the blocks of sky, sun and slopes, of which the slopes are the finest.
+fn grids(sides: &str) -> Option<[usize; 3]> {
+    let sides: Vec<usize> = sides.split(',').map(|n| n.parse().ok()).collect::<Option<_>>()?;
+    let &[sky, sun, slopes] = sides.as_slice() else { return None };
+    (slopes > 0 && sky >= slopes && sun >= slopes).then_some([sky, sun, slopes])
 }
 
 #[cfg(test)]

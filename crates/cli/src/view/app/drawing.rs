@@ -10,7 +10,7 @@ use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Presented, Screen, View
 
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
-use super::preview::REST;
+use super::preview::{PAUSE, Refined};
 use super::{App, OpenWindow};
 use crate::render;
 
@@ -119,13 +119,14 @@ impl App<'_> {
         let OpenWindow { screen, preview, lit, limits, .. } = shown;
         match preview.refine(screen, &self.state, (lit, limits)) {
             // The panel states the progress.
-            Ok(false) => {
+            Ok(Refined::Nothing) => {
                 let is_old = self.last.is_some_and(|last| last.elapsed() > PROGRESS);
                 if preview.is_busy() && is_old {
                     self.due = self.due.max(1);
                 }
             }
-            Ok(true) => {
+            Ok(Refined::Preview) => self.due = self.due.max(1),
+            Ok(Refined::Full) => {
                 if self.state.has_coarse_exposure
                     && let Err(why) = shown.expose(&mut self.state, false)
                 {
@@ -383,6 +384,12 @@ impl OpenWindow {
     fn update_figures(&mut self, frame_ms: Option<f64>) {
         self.figures.frame_ms = frame_ms;
         self.figures.compared = self.compare.as_ref().map_or_else(Vec::new, Compare::lines);
+        let full = self.lit.as_ref().map(Frame::plan);
+        self.figures.bytes = full.map_or(0, Plan::bytes) + self.preview.bytes();
+        let used = full.filter(|_| !self.preview.is_shown()).map(|plan| &plan.settings);
+        if used != self.figures.used.as_ref() {
+            self.figures.used = used.cloned();
+        }
         self.figures.preview = self.preview.line();
         self.figures.progress = self.preview.progress(self.lit.as_ref());
         self.figures.full_s = self.preview.full_s;
@@ -397,12 +404,12 @@ impl OpenWindow {
             self.turned = self.camera.and(camera).map(|_| Instant::now());
             self.camera = camera;
         }
-        self.turned.is_some_and(|turned| turned.elapsed() < REST)
+        self.turned.is_some_and(|turned| turned.elapsed() < PAUSE)
     }
 
     /// Whether the full light is shown on a mesh that can be finer.
     fn has_rested(&self) -> bool {
-        let is_turning = self.turned.is_some_and(|turned| turned.elapsed() < REST);
+        let is_turning = self.turned.is_some_and(|turned| turned.elapsed() < PAUSE);
         self.has_coarse_mesh && !self.preview.is_shown() && !is_turning
     }
 

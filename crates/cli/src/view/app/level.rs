@@ -249,19 +249,21 @@ impl Level {
     }
 }
 
-/// Plans the light of the coarse grids and the slopes that show it. Returns the images that the slopes borrow.
-pub fn plan_levels(
+/// Plans and lights a grid; the slopes show the light of the others. Returns the slot that holds its times.
+pub fn run_level(
     [sky, sun, slopes]: &mut [Level; GRIDS],
+    of: usize,
     screen: &mut Screen,
-    state: &State,
-    limits: &Limits,
-) -> Result<Vec<ImageArg>> {
-    // New environments wait for the device.
-    sky.plan_light(screen, state, limits)?;
-    if sun.is_used() {
-        sun.plan_light(screen, state, limits)?;
+    (state, limits): (&State, &Limits),
+) -> Result<usize> {
+    if of == SLOPES {
+        let borrowed = slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)?;
+        return slopes.run(screen, &borrowed);
     }
-    slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)
+    // New environments wait for the device.
+    let level = if of == SKY { sky } else { sun };
+    level.plan_light(screen, state, limits)?;
+    level.run(screen, &[])
 }
 
 /// Plans the first of the grids that has no frame, so that input waits for one of them at most. Returns whether there was

@@ -107,11 +107,9 @@ impl OpenWindow {
     /// Runs a pass of the panel, once there is light. Returns what it asks for, and whether egui asks for another pass.
     pub(super) fn run_panel(&mut self, state: &State) -> (Vec<Change>, bool) {
         let Self { preview, lit, compare, figures, gui, window, screen, .. } = self;
-        let plan = match (preview.lit(), lit) {
-            (Some((lit, ..)), _) => lit.plan(),
-            (None, Some(lit)) => lit.plan(),
-            (None, None) => return (Vec::new(), false),
-        };
+        if preview.lit().is_none() && lit.is_none() {
+            return (Vec::new(), false);
+        }
         let (lefts, size) = places(self.size, compare.is_some());
         // If only one picture fits, it is the main one, without a label.
         let compared =
@@ -123,7 +121,7 @@ impl OpenWindow {
         let (textures, asks) = gui.run(window, self.size, |ui| {
             panel.places.clear();
             paint_over(ui, &marks, &labels);
-            panel.show(ui, state, (plan, figures));
+            panel.show(ui, state, figures);
         });
         screen.set_textures(textures);
         self.places = panel.places;

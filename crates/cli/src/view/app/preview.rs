@@ -16,45 +16,28 @@ use super::super::brush::together;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
-use super::level::{
-    GRIDS, Ground, Level, SKY, SLOPES, SUN, grid_work, plan_levels, plan_next, work,
-};
+use super::level::{GRIDS, Ground, Level, SKY, SLOPES, SUN, grid_work, plan_next, run_level, work};
+use super::sides::{DRAG, DRAGGED, FIXED_MS, LEAST_GRID, REST, RESTED, STAGES, Sides};
 use crate::render;
 use crate::setup::total_ns;
 
-/// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
-/// The part of the slopes' time that is left where a camera draws a mesh.
-const WITH_MESH: f64 = 0.4;
-/// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
-const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
 const ANSWER_MS: f64 = 50.0;
-/// Shortest side of a coarser grid, grid points.
-const LEAST_GRID: usize = 32;
 /// Refinement begins when input has rested for so long.
-pub(super) const REST: Duration = Duration::from_millis(120);
+pub(super) const PAUSE: Duration = Duration::from_millis(120);
 
-/// Shares of the time aimed at where a preview keeps its grids: while input goes on, and at rest.
-const DRAGGED: Range<f64> = 0.0..3.0;
-const RESTED: Range<f64> = 0.4..1.4;
-
-/// What a device does in a millisecond: texels times azimuths of the full light; of the grids' light, and texels of slopes.
-#[derive(Clone, Copy)]
-struct Rates {
-    full: f64,
-    grids: [f64; GRIDS],
-}
-
-/// Before anything was measured: lavapipe on two cores; a GPU.
-const CPU_RATES: Rates = Rates { full: 5e4, grids: [1e5, 1e5, 5.5e4] };
-const GPU_RATES: Rates = Rates { full: 1e7, grids: [2e7; GRIDS] };
+/// What a device does in a millisecond, in texels times azimuths of the full light, before anything was measured: lavapipe on two
+/// cores; a GPU.
+const CPU_RATE: f64 = 5e4;
+const GPU_RATE: f64 = 1e7;
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
+    /// Lights the preview at rest, from this grid on.
+    Finer(usize),
     /// Plans the full light.
     Begin,
     /// Its passes from this one on.
@@ -62,25 +45,42 @@ enum Next {
     Nothing,
 }
 
+/// What a part of the refinement has brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refined {
+    Nothing,
+    Preview,
+    Full,
+}
+
 /// Slots whose GPU times are still to be read.
 #[derive(Clone, Copy)]
 enum Running {
     Preview([Option<usize>; GRIDS]),
+    /// A grid of the preview at rest.
+    Finer(usize, usize),
     Full(usize),
 }
 
 pub struct Preview {
-    levels: Option<[Level; GRIDS]>,
-    /// Other grids that a thread makes, during a drag or at rest.
-    next_grids: Option<JoinHandle<Result<[Ground; GRIDS]>>>,
-    /// The thread that computes the error of the last preview.
-    next_error: Option<JoinHandle<Option<f64>>>,
-    /// Whether the preview is shown.
-    is_shown: bool,
+    /// While input goes on, and at rest.
+    levels: [Option<[Level; GRIDS]>; STAGES],
+    sides: Sides,
+    /// Grids of a stage that a thread makes, during a drag or at rest.
+    next_grids: Option<(usize, JoinHandle<Result<[Ground; GRIDS]>>)>,
+    /// Whether grids of the preview at rest are to be made.
+    lacks_finer: bool,
+    /// Whether the device refused them.
+    has_no_finer: bool,
+    /// The thread that computes the errors of the last previews.
+    next_errors: Option<JoinHandle<[Option<f64>; STAGES]>>,
+    /// The stage that is shown.
+    shown: Option<usize>,
     next: Next,
     /// Since when the input rests.
     changed: Instant,
-    rates: Rates,
+    /// Speed of the full light.
+    rate: f64,
     running: Option<Running>,
     /// Times of the passes of the refinement so far.
     times: Vec<Timing>,
@@ -92,24 +92,26 @@ pub struct Preview {
     /// Edited while no preview was in use: the levels lack it.
     missed: Option<Rectangle>,
     is_full_stale: bool,
-    /// Sides of the grids' blocks where a script gives them. Times then decide nothing.
-    fixed: Option<[usize; GRIDS]>,
-    /// Seconds from the last input to the full light.
+    /// Seconds from the last input to the picture of the preview at rest, and to the full light.
+    pub finer_s: Option<f64>,
     pub full_s: Option<f64>,
-    /// Error against the full light when both were last computed: RMSE over the mean.
-    pub error: Option<f64>,
+    /// Errors of the stages against the full light when both were last computed: RMSE over the mean.
+    pub errors: [Option<f64>; STAGES],
 }
 
 impl Preview {
     pub fn new(is_cpu: bool) -> Self {
         Self {
-            levels: None,
+            levels: [None, None],
+            sides: Sides::new(is_cpu),
             next_grids: None,
-            next_error: None,
-            is_shown: false,
+            lacks_finer: false,
+            has_no_finer: false,
+            next_errors: None,
+            shown: None,
             next: Next::Nothing,
             changed: Instant::now(),
-            rates: if is_cpu { CPU_RATES } else { GPU_RATES },
+            rate: if is_cpu { CPU_RATE } else { GPU_RATE },
             running: None,
             times: Vec::new(),
             lacks_times: false,
@@ -117,23 +119,23 @@ impl Preview {
             edited: None,
             missed: None,
             is_full_stale: true,
-            fixed: None,
+            finer_s: None,
             full_s: None,
-            error: None,
+            errors: [None; STAGES],
         }
     }
 
     /// Whether full light is too slow to answer input.
     pub fn is_needed(&self, state: &State) -> bool {
         let field = &state.scene.field;
-        let ms = work(&state.scene, &state.quality, 1) / self.rates.full;
-        let is_slow = self.fixed.is_some() || ms > ANSWER_MS;
+        let ms = work(&state.scene, &state.quality, 1) / self.rate;
+        let is_slow = self.sides.are_fixed() || ms > ANSWER_MS;
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids by the sides of their blocks: sky, sun, slopes.
-    pub fn fix(&mut self, sides: Option<[usize; GRIDS]>) {
-        self.fixed = sides;
+    /// Fixes the grids of the stages by the sides of their blocks: sky, sun, slopes. Times then decide nothing.
+    pub fn fix(&mut self, sides: Option<[Option<[usize; GRIDS]>; STAGES]>) {
+        self.sides.fixed = sides;
     }
 
     /// An edit that no preview shows.
@@ -144,7 +146,7 @@ impl Preview {
 
     /// Shows the full light from now on. Returns whether it must be computed.
     pub fn leave(&mut self) -> bool {
-        (self.is_shown, self.next) = (false, Next::Nothing);
+        (self.shown, self.next) = (None, Next::Nothing);
         let is_stale = self.is_full_stale || self.edited.is_some();
         (self.is_full_stale, self.edited) = (false, None);
         is_stale
@@ -152,7 +154,7 @@ impl Preview {
 
     /// Whether the full light is not the current one where no preview is shown.
     pub fn is_old(&self) -> bool {
-        self.is_shown || self.edited.is_some()
+        self.shown.is_some() || self.edited.is_some()
     }
 
     /// Whether work is left for a picture at rest.
@@ -162,29 +164,47 @@ impl Preview {
 
     /// Whether work is left for the panel or for the next input.
     pub fn has_more(&self) -> bool {
-        self.next_error.is_some() || self.next_grids.is_some() || self.has_new_grids()
+        let is_made = self.next_grids.is_some() || self.lacks_finer;
+        self.next_errors.is_some() || is_made || self.has_new_grids() || self.has_unplanned_finer()
     }
 
-    /// Whether grids were made that have not been lit yet.
+    /// Whether grids for input were made that have not been lit yet.
     fn has_new_grids(&self) -> bool {
-        self.levels.iter().flatten().any(|level| level.is_used() && level.runs == 0)
+        self.levels[DRAG].iter().flatten().any(|level| level.is_used() && level.runs == 0)
     }
 
-    /// Whether the preview is shown.
+    /// Whether grids for rest were made that have no plans yet.
+    fn has_unplanned_finer(&self) -> bool {
+        self.levels[REST].iter().flatten().any(|level| level.is_used() && level.lit.is_none())
+    }
+
+    /// Whether a preview is shown.
     pub fn is_shown(&self) -> bool {
-        self.is_shown
+        self.shown.is_some()
+    }
+
+    /// Whether the preview at rest comes next.
+    pub fn awaits_finer(&self) -> bool {
+        matches!(self.next, Next::Finer(_))
     }
 
     /// The preview, where it is shown.
     pub fn lit(&mut self) -> Option<(&mut Frame, &Scene, Blocks)> {
-        let [.., slopes] = self.levels.as_mut().filter(|_| self.is_shown)?;
+        let [.., slopes] = self.levels[self.shown?].as_mut()?;
         let Level { lit, scene, blocks, .. } = slopes;
         lit.as_mut().map(|lit| (lit, &*scene, *blocks))
     }
 
+    /// Memory of all grids.
+    pub fn bytes(&self) -> u64 {
+        let levels = self.levels.iter().flatten().flatten();
+        levels.filter_map(|level| level.lit.as_ref()).map(|lit| lit.plan().bytes()).sum()
+    }
+
     /// How the shown light was computed.
     pub fn line(&self) -> Option<String> {
-        let levels = self.levels.as_ref().filter(|_| self.is_shown)?;
+        let stage = self.shown?;
+        let levels = self.levels[stage].as_ref()?;
         let [sky, sun, slopes] = levels
             .each_ref()
             .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
@@ -192,8 +212,7 @@ impl Preview {
             true => String::new(),
             false => format!(", sun of {sun}"),
         };
-        let error = self
-            .error
+        let error = self.errors[stage]
             .map_or_else(String::new, |e| format!(", RMSE {:.1} % at the last rest", 100.0 * e));
         Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
     }
@@ -202,7 +221,7 @@ impl Preview {
     pub fn progress(&self, full: Option<&Frame>) -> Option<f32> {
         match self.next {
             Next::Nothing => None,
-            Next::Begin => Some(0.0),
+            Next::Finer(_) | Next::Begin => Some(0.0),
             Next::Passes(done) => {
                 Some(done as f32 / full.map_or(1, |lit| lit.plan().passes.len().max(1)) as f32)
             }
@@ -231,123 +250,168 @@ impl Preview {
         self.fit(screen, state, edited.is_some())?;
         self.changed = Instant::now();
         let missed = self.missed.take();
+        if edited.is_some() || missed.is_some() || state.is_moving() {
+            // Made again at rest.
+            self.end_stage(REST, screen)?;
+        }
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
-        let levels = self.levels.as_mut().expect("made by fit");
+        let levels = self.levels[DRAG].as_mut().expect("made by fit");
         levels.iter_mut().try_for_each(|level| level.take(state, (edited, has_new_light)))?;
         self.running = Some(Running::Preview(run_levels(levels, screen, state, limits)?));
-        self.is_shown = true;
-        self.next = if state.is_moving() { Next::Nothing } else { Next::Begin };
+        self.shown = Some(DRAG);
+        self.next = match self.levels[REST].is_some() && !self.has_unplanned_finer() {
+            _ if state.is_moving() => Next::Nothing,
+            true => Next::Finer(SKY),
+            false => Next::Begin,
+        };
         Ok(())
     }
 
     /// Starts a thread that makes the grids of the first preview, if there will be one.
     pub fn prepare(&mut self, state: &State) {
         if self.is_needed(state)
-            && let Some(sides) = self.other_grids(state, DRAGGED)
+            && let Some(sides) = self.other_grids(state, DRAG, DRAGGED)
         {
-            self.start_grids(state, sides);
+            self.start_grids(state, DRAG, sides);
         }
     }
 
     /// Whether the thread that makes grids still runs.
     pub fn makes_grids(&self) -> bool {
-        self.next_grids.as_ref().is_some_and(|thread| !thread.is_finished())
+        self.next_grids.as_ref().is_some_and(|(_, thread)| !thread.is_finished())
     }
 
     /// Makes the levels if there are none and no thread has made them. If the present ones are too slow for a drag, a thread makes
     /// others, and the first input after it finishes uses them. Edited and animated heights, and sides that a script gives, wait for
     /// new levels.
     fn fit(&mut self, screen: &mut Screen, state: &State, is_edited: bool) -> Result<()> {
-        let Some(sides) = self.other_grids(state, DRAGGED) else { return Ok(()) };
-        let waits = self.fixed.is_some() || state.is_moving() || is_edited;
+        let Some(sides) = self.other_grids(state, DRAG, DRAGGED) else { return Ok(()) };
+        let waits = self.sides.are_fixed() || state.is_moving() || is_edited;
         if waits {
             self.next_grids = None;
         }
-        if let Some(grounds) = finished(&mut self.next_grids) {
-            let grounds = grounds?;
-            self.end(screen)?;
-            self.levels = Some(levels_of(grounds));
-        } else if waits || self.levels.is_none() {
-            self.end(screen)?;
+        if self.take_grids(screen)? == Some(DRAG) {
+            return Ok(());
+        }
+        if waits || self.levels[DRAG].is_none() {
+            self.end_stage(DRAG, screen)?;
             self.next_grids = None;
-            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
+            self.levels[DRAG] = Some(levels_of(grounds(&state.scene, sides)?));
         } else {
-            self.start_grids(state, sides);
+            self.start_grids(state, DRAG, sides);
         }
         Ok(())
     }
 
     /// Starts a thread that makes other grids, unless one is running.
-    fn start_grids(&mut self, state: &State, sides: [usize; GRIDS]) {
+    fn start_grids(&mut self, state: &State, stage: usize, sides: [usize; GRIDS]) {
         if self.next_grids.is_none() {
             let scene = state.scene.clone();
-            self.next_grids = Some(std::thread::spawn(move || grounds(&scene, sides)));
+            let thread = std::thread::spawn(move || grounds(&scene, sides));
+            self.next_grids = Some((stage, thread));
         }
     }
 
-    /// Sides of the blocks of grids that fit the time, unless those in use are kept.
-    fn other_grids(&self, state: &State, kept_at: Range<f64>) -> Option<[usize; GRIDS]> {
-        let field = &state.scene.field;
-        let most = (field.rows().min(field.cols()) / LEAST_GRID).max(1);
-        // Shares of the intended time.
-        let share = |of: usize, side: usize| {
-            let ms = grid_work(&state.scene, &state.quality, of, side) / self.rates.grids[of];
-            let left = if of == SLOPES && state.has_camera() { WITH_MESH } else { 1.0 };
-            (FIXED_MS[of] + ms) / (left * INTENDED_MS[of])
-        };
-        let least = |of: usize| (1..most).find(|side| share(of, *side) <= 1.0).unwrap_or(most);
-        let slopes = least(SLOPES);
-        let coarse = |of: usize| least(of).max(slopes);
-        let wanted = self.fixed.unwrap_or_else(|| [coarse(SKY), coarse(SUN), slopes]);
-        let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
-        // Other grids take a third of a second of the host, so the present ones are kept while they roughly fit, longest in a drag.
-        let is_kept = kept.is_some_and(|kept| {
-            let fits = |of: usize| kept[of] <= most && kept_at.contains(&share(of, kept[of]));
-            kept == wanted || self.fixed.is_none() && (0..GRIDS).all(fits)
-        });
-        (!is_kept).then_some(wanted)
+    /// Takes the grids that a thread has made. Returns their stage.
+    fn take_grids(&mut self, screen: &mut Screen) -> Result<Option<usize>> {
+        let made = self.next_grids.take_if(|(_, thread)| thread.is_finished());
+        let Some((stage, thread)) = made else { return Ok(None) };
+        let grounds = joined(thread)?;
+        self.end_stage(stage, screen)?;
+        self.levels[stage] = Some(levels_of(grounds));
+        Ok(Some(stage))
     }
 
-    /// Continues the change to other grids: takes them once they are made, then plans one at a time and lights each once, as a
-    /// driver may compile the shaders only then.
+    /// Sides of the blocks of a stage's grids that fit the time, unless those in use are kept.
+    fn other_grids(
+        &self,
+        state: &State,
+        stage: usize,
+        kept_at: Range<f64>,
+    ) -> Option<[usize; GRIDS]> {
+        let levels = self.levels[stage].as_ref();
+        let kept = levels.map(|levels| levels.each_ref().map(|level| level.blocks.side));
+        self.sides.others(state, (stage, kept), kept_at)
+    }
+
+    /// Continues the change to other grids: takes them once they are made, then plans one at a time. Those for input are lit
+    /// once, as a driver may compile the shaders only then. Those for rest come last.
     fn change_grids(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        if let Some(grounds) = finished(&mut self.next_grids) {
-            let grounds = grounds?;
-            self.end(screen)?;
-            let levels = self.levels.insert(levels_of(grounds));
-            return levels.iter_mut().try_for_each(|level| level.take(state, (None, true)));
+        if let Some(stage) = self.take_grids(screen)? {
+            let mut levels = self.levels[stage].iter_mut().flatten();
+            return levels.try_for_each(|level| level.take(state, (None, true)));
         }
-        let is_new = self.has_new_grids();
-        if let Some(levels) = self.levels.as_mut().filter(|_| is_new)
-            && !plan_next(levels, screen, state, limits)?
-        {
-            run_levels(levels, screen, state, limits)?;
+        if self.has_new_grids() {
+            let levels = self.levels[DRAG].as_mut().expect("has new grids");
+            if !plan_next(levels, screen, state, limits)? {
+                run_levels(levels, screen, state, limits)?;
+            }
+        } else if self.has_unplanned_finer() {
+            let levels = self.levels[REST].as_mut().expect("has unplanned grids");
+            if plan_next(levels, screen, state, limits).is_err() {
+                self.has_no_finer = true;
+                self.end_stage(REST, screen)?;
+            }
+        } else if self.lacks_finer && self.next_grids.is_none() {
+            self.lacks_finer = false;
+            if let Some(sides) = self.other_grids(state, REST, RESTED) {
+                self.start_grids(state, REST, sides);
+            }
         }
         Ok(())
     }
 
-    /// Goes on with the full light, by a part that keeps the device busy for about [`PART_MS`]. The device is idle.
-    /// Returns whether the full light is complete.
+    /// Goes on with the preview at rest and the full light, by a part that keeps the device busy for about [`PART_MS`]. The device
+    /// is idle.
     pub fn refine(
         &mut self,
         screen: &mut Screen,
         state: &State,
         (full, limits): (&mut Option<Frame>, &Limits),
-    ) -> Result<bool> {
+    ) -> Result<Refined> {
         self.read_times(state, full);
-        self.error = finished(&mut self.next_error).unwrap_or(self.error);
+        if let Some(thread) = self.next_errors.take_if(|thread| thread.is_finished()) {
+            self.errors = joined(thread);
+        }
         match self.next {
-            Next::Nothing => self.change_grids(screen, state, limits).map(|()| false),
-            Next::Begin if self.changed.elapsed() < REST => Ok(false),
-            Next::Begin => self.begin_full(screen, state, (full, limits)).map(|()| false),
+            Next::Nothing => self.change_grids(screen, state, limits)?,
+            Next::Begin | Next::Finer(_) if self.changed.elapsed() < PAUSE => {}
+            Next::Finer(of) => return self.light_finer(screen, of, (state, limits)),
+            Next::Begin => self.begin_full(screen, state, (full, limits))?,
             Next::Passes(done) => {
                 let lit = full.as_mut().expect("planned");
-                if done < lit.plan().passes.len() {
-                    return self.run_part(screen, state, (lit, done)).map(|()| false);
+                if done == lit.plan().passes.len() {
+                    return self.complete(screen, state, lit).map(|()| Refined::Full);
                 }
-                self.complete(screen, state, lit).map(|()| true)
+                self.run_part(screen, state, (lit, done))?;
             }
         }
+        Ok(Refined::Nothing)
+    }
+
+    /// Lights a grid of the preview at rest, which is shown after the last one. It is left out where the device has no room for it.
+    fn light_finer(
+        &mut self,
+        screen: &mut Screen,
+        of: usize,
+        (state, limits): (&State, &Limits),
+    ) -> Result<Refined> {
+        let levels = self.levels[REST].as_mut().expect("made before");
+        levels[of].take(state, (None, true))?;
+        if levels[of].is_used() {
+            let Ok(slot) = run_level(levels, of, screen, (state, limits)) else {
+                self.has_no_finer = true;
+                self.next = Next::Begin;
+                return self.end_stage(REST, screen).map(|()| Refined::Nothing);
+            };
+            self.running = Some(Running::Finer(of, slot));
+        }
+        if of < SLOPES {
+            self.next = Next::Finer(of + 1);
+            return Ok(Refined::Nothing);
+        }
+        (self.shown, self.next) = (Some(REST), Next::Begin);
+        Ok(Refined::Preview)
     }
 
     /// Plans the full light, or edits it at once.
@@ -357,7 +421,7 @@ impl Preview {
         state: &State,
         (full, limits): (&mut Option<Frame>, &Limits),
     ) -> Result<()> {
-        let plan = in_parts(state, limits, self.rates.full)?;
+        let plan = in_parts(state, limits, self.rate)?;
         let is_new = replan(screen, full, plan, &state.scene)?;
         let lit = full.as_mut().expect("made by replan");
         let field = &state.scene.field;
@@ -381,7 +445,7 @@ impl Preview {
         (lit, done): (&mut Frame, usize),
     ) -> Result<()> {
         let passes = lit.plan().passes.len();
-        let ms = work(&state.scene, &state.quality, 1) / self.rates.full / passes as f64;
+        let ms = work(&state.scene, &state.quality, 1) / self.rate / passes as f64;
         let count = (PART_MS / ms).clamp(1.0, passes as f64) as usize;
         let part: Vec<usize> = (done..(done + count).min(passes)).collect();
         let field = &state.scene.field;
@@ -392,29 +456,40 @@ impl Preview {
         Ok(())
     }
 
-    /// Shows the full light. Threads measure the preview against it and make other grids.
+    /// Shows the full light. Threads measure the previews against it and make other grids.
     fn complete(&mut self, screen: &mut Screen, state: &State, lit: &Frame) -> Result<()> {
-        (self.is_shown, self.next) = (false, Next::Nothing);
+        let shown = self.shown.take();
+        self.next = Next::Nothing;
         (self.edited, self.is_full_stale) = (None, false);
         self.full_s = Some(self.changed.elapsed().as_secs_f64());
-        if let Some([.., Level { blocks, lit: Some(fine), .. }]) = &self.levels {
-            let full = screen.gpu().pixels(lit, 0)?;
-            let ours = screen.gpu().pixels(fine, 0)?;
-            let (blocks, voids) = (*blocks, state.scene.field.voids().map(<[bool]>::to_vec));
-            self.next_error = Some(std::thread::spawn(move || {
-                error(&blocks, voids.as_deref(), &render::rgb(&ours), &render::rgb(&full))
-            }));
+        let full = screen.gpu().pixels(lit, 0)?;
+        let mut ours = [None, None];
+        for (stage, ours) in ours.iter_mut().enumerate() {
+            let is_lit = shown.is_some_and(|shown| stage <= shown);
+            let levels = self.levels[stage].as_ref().filter(|_| is_lit);
+            if let Some([.., Level { blocks, lit: Some(lit), .. }]) = levels {
+                *ours = Some((*blocks, screen.gpu().pixels(lit, 0)?));
+            }
         }
+        let voids = state.scene.field.voids().map(<[bool]>::to_vec);
+        self.next_errors = Some(std::thread::spawn(move || {
+            let full = render::rgb(&full);
+            ours.map(|of_stage| {
+                let (blocks, ours) = of_stage?;
+                error(&blocks, voids.as_deref(), &render::rgb(&ours), &full)
+            })
+        }));
         // For the next input, while there is time.
-        if let Some(sides) = self.other_grids(state, RESTED) {
-            self.start_grids(state, sides);
+        if let Some(sides) = self.other_grids(state, DRAG, RESTED) {
+            self.start_grids(state, DRAG, sides);
         }
+        self.lacks_finer = !self.has_no_finer;
         Ok(())
     }
 
     /// Takes the times of the last part, and learns from them how fast the device is.
     fn read_times(&mut self, state: &State, full: &mut Option<Frame>) {
-        let learns = self.fixed.is_none();
+        let learns = !self.sides.are_fixed();
         let learn = |rate: &mut f64, work: f64, times: &[Timing], fixed_ms: f64| {
             // Devices without timestamps give none.
             if times.is_empty() || !learns {
@@ -437,13 +512,23 @@ impl Preview {
                 if is_whole {
                     if self.is_full_stale && !self.lacks_times {
                         let work = work(&state.scene, &state.quality, 1);
-                        learn(&mut self.rates.full, work, &self.times, 0.0);
+                        learn(&mut self.rate, work, &self.times, 0.0);
                     }
                     self.complete_times = Some(std::mem::take(&mut self.times));
                 }
             }
+            Some(Running::Finer(of, slot)) => {
+                let level = self.levels[REST].as_mut().map(|levels| &mut levels[of]);
+                let lit = level.and_then(|level| level.lit.as_mut());
+                let times = lit.and_then(|lit| lit.renderer().timings(slot));
+                self.times.extend(times.into_iter().flatten());
+                if of == SLOPES {
+                    self.finer_s = Some(self.changed.elapsed().as_secs_f64());
+                    self.complete_times = Some(std::mem::take(&mut self.times));
+                }
+            }
             Some(Running::Preview(slots)) => {
-                let levels = self.levels.as_mut().filter(|levels| levels[SLOPES].runs > 1);
+                let levels = self.levels[DRAG].as_mut().filter(|levels| levels[SLOPES].runs > 1);
                 let mut all = Vec::new();
                 for (level, slot) in levels.into_iter().flatten().zip(slots) {
                     let lit = level.lit.as_mut().zip(slot);
@@ -452,7 +537,7 @@ impl Preview {
                     let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
                     // Without tables, all of the time is taken to grow with the grid.
                     let fixed_ms = if level.ran_all { FIXED_MS[level.of] } else { 0.0 };
-                    learn(&mut self.rates.grids[level.of], work, &times, fixed_ms);
+                    learn(&mut self.sides.rates[level.of], work, &times, fixed_ms);
                     all.extend(times);
                 }
                 if !all.is_empty() {
@@ -469,16 +554,26 @@ impl Preview {
 
     pub fn end(&mut self, screen: &mut Screen) -> Result<()> {
         self.running = None;
-        let frames = self.levels.take().into_iter().flatten().filter_map(|level| level.lit);
+        (0..STAGES).map(|stage| self.end_stage(stage, screen)).fold(Ok(()), Result::and)
+    }
+
+    /// Frees the grids of a stage.
+    fn end_stage(&mut self, stage: usize, screen: &mut Screen) -> Result<()> {
+        self.running.take_if(|running| match running {
+            Running::Preview(_) => stage == DRAG,
+            Running::Finer(..) => stage == REST,
+            Running::Full(_) => false,
+        });
+        self.shown.take_if(|shown| *shown == stage);
+        let frames = self.levels[stage].take().into_iter().flatten().filter_map(|level| level.lit);
         frames.map(|lit| screen.end(lit)).fold(Ok(()), Result::and)
     }
 }
 
-/// The result of a thread, once it has one.
-fn finished<T>(thread: &mut Option<JoinHandle<T>>) -> Option<T> {
-    let ended = thread.take_if(|thread| thread.is_finished())?;
+/// The result of a finished thread.
+fn joined<T>(thread: JoinHandle<T>) -> T {
     // Resumes the thread's panic, which has already been reported.
-    Some(ended.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    thread.join().unwrap_or_else(|panic| resume_unwind(panic))
 }
 
 /// The grids of blocks of these sides.
@@ -494,12 +589,10 @@ fn run_levels(
     state: &State,
     limits: &Limits,
 ) -> Result<[Option<usize>; GRIDS]> {
-    let borrowed = plan_levels(levels, screen, state, limits)?;
     let mut slots = [None; GRIDS];
-    for (level, slot) in levels.iter_mut().zip(&mut slots) {
-        if level.is_used() {
-            let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
-            *slot = Some(level.run(screen, borrowed)?);
+    for (of, slot) in slots.iter_mut().enumerate() {
+        if levels[of].is_used() {
+            *slot = Some(run_level(levels, of, screen, (state, limits))?);
         }
     }
     Ok(slots)

@@ -75,6 +75,11 @@ impl App<'_> {
                 }
                 None
             }
+            Step::Finer => {
+                self.advance()?;
+                let awaits = |shown: &OpenWindow| shown.preview.awaits_finer();
+                self.shown.as_ref().is_some_and(awaits).then_some(Step::Finer)
+            }
             Step::Rest => {
                 self.advance()?;
                 let is_busy = self.refines() || self.answering.is_some();
@@ -211,10 +216,8 @@ impl App<'_> {
 
     /// The text of the panel.
     fn text(&self) -> String {
-        let Some(OpenWindow { lit: Some(lit), figures, .. }) = &self.shown else {
-            return String::new();
-        };
-        let lines = self.state.lines(lit.plan(), figures);
+        let Some(OpenWindow { figures, .. }) = &self.shown else { return String::new() };
+        let lines = self.state.lines(figures);
         lines.iter().map(|line| format!("{line}\n")).collect()
     }
 
@@ -236,11 +239,18 @@ impl App<'_> {
         let passes = self.shown.as_ref().map_or(0.0, |shown| shown.figures.ms());
         let resident = resident_kib().map_or_else(|| "unknown".into(), |kib| kib.to_string());
         let answers = std::mem::take(&mut self.answers);
-        let full_s = self.shown.as_ref().and_then(|shown| shown.preview.full_s);
-        let error = self.shown.as_ref().and_then(|shown| shown.preview.error);
-        if let Some(slowest) = answers.iter().copied().reduce(f64::max) {
-            let full = full_s.map_or_else(String::new, |s| format!("; full light after {s:.2} s"));
-            let share = error.map_or_else(String::new, |e| format!(", RMSE {:.2} %", 100.0 * e));
+        let preview = self.shown.as_ref().map(|shown| &shown.preview);
+        if let (Some(slowest), Some(preview)) = (answers.iter().copied().reduce(f64::max), preview)
+        {
+            let after = |what: &str, s: Option<f64>| {
+                s.map_or_else(String::new, |s| format!("; {what} after {s:.2} s"))
+            };
+            let finer = after("preview at rest", preview.finer_s);
+            let full = finer + &after("full light", preview.full_s);
+            let of_stages = ["RMSE", "at rest"].into_iter().zip(preview.errors);
+            let share: String = of_stages
+                .filter_map(|(name, error)| Some(format!(", {name} {:.2} %", 100.0 * error?)))
+                .collect();
             crate::say!(
                 "{what}input to picture, median of {} {:.1} ms, longest {slowest:.1} ms{full}{share}",
                 answers.len(),

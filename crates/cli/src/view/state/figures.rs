@@ -1,7 +1,7 @@
 //! The text of the panel: figures, settings, and keys.
 
 use ridgelight::gpu::Timing;
-use ridgelight::plan::{Plan, Rectangle};
+use ridgelight::plan::Rectangle;
 use ridgelight::scene::Setting;
 
 use super::lights::compass;
@@ -39,12 +39,16 @@ pub const KEYS: [&str; 21] = [
 pub struct Figures {
     /// Passes of the last complete frame.
     pub light: Vec<Timing>,
-    /// Memory of the drawing passes.
+    /// Passes that draw it.
     pub drawing: Vec<Timing>,
     /// The last edit, and milliseconds of its passes.
     pub edit: Option<(Rectangle, f64)>,
     /// Milliseconds from frame to frame.
     pub frame_ms: Option<f64>,
+    /// Memory of the light and of the previews.
+    pub bytes: u64,
+    /// Settings of the shown light; none of a preview, which has others.
+    pub used: Option<Vec<(String, String)>>,
     /// How the shown light was computed, where it is not the full one.
     pub preview: Option<String>,
     /// The share of the full light that is done, where it is being computed.
@@ -70,11 +74,15 @@ impl Figures {
     pub fn ms(&self) -> f64 {
         self.times().map(|t| t.ns).sum::<f64>() / 1e6
     }
+
+    fn mib(&self) -> f64 {
+        self.bytes as f64 / f64::from(1 << 20)
+    }
 }
 
 impl State {
     /// The panel as lines of text; none where it is hidden.
-    pub fn lines(&self, plan: &Plan, figures: &Figures) -> Vec<String> {
+    pub fn lines(&self, figures: &Figures) -> Vec<String> {
         if self.text == Text::Nothing {
             return Vec::new();
         }
@@ -82,7 +90,7 @@ impl State {
         lines.extend(self.tool_line());
         let total = figures.ms();
         let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
-        lines.push(format!("passes {total:.2} ms{frame}  memory {:.1} MiB", mib(plan)));
+        lines.push(format!("passes {total:.2} ms{frame}  memory {:.1} MiB", figures.mib()));
         for (name, ns) in figures.passes() {
             lines.push(format!("  {name:<18}{:>9.2} ms", ns / 1e6));
         }
@@ -90,7 +98,7 @@ impl State {
         if self.text == Text::Settings {
             lines.push(String::new());
             lines.extend(self.setting_lines());
-            lines.extend(self.notes(plan));
+            lines.extend(self.notes(figures));
         }
         lines.extend(self.message.clone());
         if self.text == Text::Keys {
@@ -101,10 +109,10 @@ impl State {
     }
 
     /// The field, the tool, and the time of all passes: what the panel's other parts do not show.
-    pub fn lines_beside_widgets(&self, plan: &Plan, figures: &Figures) -> Vec<String> {
+    pub fn lines_beside_widgets(&self, figures: &Figures) -> Vec<String> {
         let field = &self.scene.field;
         let mut lines =
-            vec![format!("{} x {}  memory {:.1} MiB", field.cols(), field.rows(), mib(plan))];
+            vec![format!("{} x {}  memory {:.1} MiB", field.cols(), field.rows(), figures.mib())];
         lines.extend(self.tool_line());
         let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
         lines.push(format!("passes {:.2} ms{frame}", figures.ms()));
@@ -186,19 +194,16 @@ impl State {
         self.settings().map(line).collect()
     }
 
-    /// Why the chosen setting changes nothing, if so.
-    pub fn notes(&self, plan: &Plan) -> Vec<String> {
+    /// Why the chosen setting changes nothing in the shown light, if so.
+    pub fn notes(&self, figures: &Figures) -> Vec<String> {
+        let Some(used) = &figures.used else { return Vec::new() };
         let chosen = self.settings().filter(|(setting, _, is_chosen)| {
             *is_chosen && self.asked.first(setting.name).is_some()
         });
         let written: Vec<_> =
             chosen.map(|(setting, word, _)| (setting.name.to_owned(), word)).collect();
-        idle::notes(&written, &plan.settings, &|_| None)
+        idle::notes(&written, used, &|_| None)
     }
-}
-
-fn mib(plan: &Plan) -> f64 {
-    plan.bytes() as f64 / f64::from(1 << 20)
 }
 
 /// Times summed by pass name, in order of first appearance.
