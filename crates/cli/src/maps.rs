@@ -235,6 +235,9 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let words = light("sun").words(&lights).concat();
     let direction = words.split(',').take(2).collect::<Vec<_>>().join(",");
     note_ignored("hillshade", &sun, false, args.map.global.quiet);
+    if let (Some(device), false) = (&args.map.global.device, args.map.global.quiet) {
+        idle::note("device", device, "in a hillshade, which the host computes");
+    }
     let job = Job::new(&args.map, &args.map.surface, setup::of_neighbours)?;
     let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);

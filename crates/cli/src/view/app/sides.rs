@@ -14,8 +14,8 @@ pub const REST: usize = 1;
 const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
 /// Times of a stage over those. At rest, input waits for one grid at most.
 const LONGER: [f64; STAGES] = [1.0, 3.0];
-/// The part of the slopes' time that is left where a camera draws a mesh.
-const WITH_MESH: f64 = 0.4;
+/// The parts of those times that are left where a camera draws a mesh.
+const WITH_MESH: [f64; GRIDS] = [1.0, 0.4, 0.3];
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
 pub const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 /// Shortest side of a coarser grid, grid points.
@@ -59,7 +59,7 @@ impl Sides {
         // Shares of the intended time.
         let share = |of: usize, side: usize| {
             let ms = grid_work(&state.scene, &state.quality, of, side) / self.rates[of];
-            let left = if of == SLOPES && state.has_camera() { WITH_MESH } else { 1.0 };
+            let left = if state.has_camera() { WITH_MESH[of] } else { 1.0 };
             (FIXED_MS[of] + ms) / (left * LONGER[stage] * INTENDED_MS[of])
         };
         let wanted = if let Some(fixed) = self.fixed {
