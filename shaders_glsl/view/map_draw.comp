@@ -3,8 +3,8 @@
 // Reads: radiance, tone_steps (texel k: the least radiance of code k, NaN where no radiance has it), voids.
 // Writes: picture, four bytes per pixel.
 // One invocation is one pixel: the texel at its middle; the mean of PLACES x PLACES texels where a pixel covers
-// several; between texels where the map is smooth. Voids count as the middle one, and so do texels outside in a mean;
-// between texels, those outside count as the nearest one.
+// several; between texels where the map is smooth. A void counts as the texel at the middle. Outside the field, a mean takes
+// the texel at the middle, and bilinear interpolation the nearest one.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -38,7 +38,7 @@ float tone_step(uint code) {
     return texelFetch(tone_steps, ivec2(int(code), 0), 0).x;
 }
 
-// The curve of src/scene/tone.rs in f32, off by less than half a code: of the thresholds only the nearest one is uncertain.
+// The curve of src/scene/tone.rs in f32 errs by less than half a code, so that one threshold decides between two codes.
 uint code(float radiance) {
     float rest = 1.0 - shoulder;
     float light = radiance * exposure;

@@ -1,7 +1,7 @@
 // Computes: a coarse grid's light without its slopes and albedo: radiance over albedo, colour and a function of the normal,
 // which is linear: the cosine to the sun, or 1 and a vector of the sky.
 // Reads: normals, coarse_radiance, coarse_sun, coarse_albedo, all of the coarse grid.
-// Writes: gathered, or share, where one number stands for all colours.
+// Writes: gathered, or gathered_scalar, where one value serves all colours.
 // One invocation is one grid point.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -14,14 +14,14 @@ layout(constant_id = 0) const bool GREY = false;
 layout(constant_id = 1) const bool WITHOUT_SUN = false;
 layout(constant_id = 2) const bool ALBEDO_IS_MAP = false;
 // Colours differ only by a factor, as under a sun alone.
-layout(constant_id = 3) const bool IS_SHARE = false;
+layout(constant_id = 3) const bool IS_SCALAR = false;
 
 layout(binding = 0) uniform texture2D normals;
 layout(binding = 1) uniform texture2D coarse_radiance;
 layout(binding = 2) uniform texture2D coarse_sun;
 layout(binding = 3) uniform texture2D coarse_albedo;
 layout(binding = 4, rgba32f) uniform writeonly image2D gathered;
-layout(binding = 5, r32f) uniform writeonly image2D share;
+layout(binding = 5, r32f) uniform writeonly image2D gathered_scalar;
 
 layout(push_constant) uniform PreviewGatherPush {
     vec4 by_normal;     // east, north, up; and the constant
@@ -47,10 +47,10 @@ void main() {
     vec3 albedo = ALBEDO_IS_MAP ? texelFetch(coarse_albedo, at, 0).rgb : colour.rgb;
     albedo = max(albedo, vec3(DARK));
     vec3 lit = albedo * most.rgb * max(by_normal.w + dot(normal, by_normal.xyz), colour.w);
-    vec3 part = clamp(mix(light / lit, vec3(0.0), lessThanEqual(lit, vec3(0.0))), vec3(0.0), most.www);
-    if (IS_SHARE) {
-        imageStore(share, at, vec4(max(part.r, max(part.g, part.b))));
+    vec3 ratio = clamp(mix(light / lit, vec3(0.0), lessThanEqual(lit, vec3(0.0))), vec3(0.0), most.www);
+    if (IS_SCALAR) {
+        imageStore(gathered_scalar, at, vec4(max(ratio.r, max(ratio.g, ratio.b))));
     } else {
-        imageStore(gathered, at, vec4(part, 1.0));
+        imageStore(gathered, at, vec4(ratio, 1.0));
     }
 }

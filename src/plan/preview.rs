@@ -13,7 +13,7 @@ use crate::{Error, Result};
 /// `sky` is a scene on a coarse grid with all lights and its plan, with one image per light
 /// ([`Picture::light_layers`](super::Picture)). The first sun with irradiance, number n, is the sun, whose image is
 /// `direct.sun{n}`; all other lights count as sky. If there is a sun, `sun` is a scene on a grid of its own, with albedo 1
-/// and the sun alone, of any irradiance, and its plan. All grids begin at the north-western corner; their cells have the same shape.
+/// and that sun alone, and its plan. The sun may have another irradiance there. All grids begin at the north-western corner; their cells have the same shape.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
 /// of the fine grid if the scene has a map; four channels of unit normals: "normals" of the fine grid, the means of those that
@@ -40,7 +40,10 @@ pub fn preview(
             check_sun(sky_plan, n)?;
             let lacks =
                 || Error::setting("preview: sun", "no scene of it", "one with the sun alone");
-            Some((found, sun.ok_or_else(lacks)?))
+            let (scene, plan) = sun.ok_or_else(lacks)?;
+            // As the slopes show it, and as its own scene has it.
+            let (_, own) = first(scene).ok_or_else(lacks)?;
+            Some(([found, own], (scene, plan)))
         }
     };
     let has_albedo = matches!(fine.surface.albedo, Albedo::Map(_));
@@ -65,11 +68,9 @@ pub fn preview(
     let albedo = has_albedo.then(|| image("albedo", Owner::Input, four, fine_grid));
     let normals = image("normals", Owner::Input, four, fine_grid);
     let sky_normals = image("sky_normals", Owner::Input, four, sky_grid);
-    let of_sun = of_sun.map(|(light, (scene, plan))| {
+    let of_sun = of_sun.map(|(lights, (scene, plan))| {
         let grid = grid(&scene.field);
-        // Of the scene of its own, whose irradiance may be another.
-        let own = first(scene).map_or(light, |(_, own)| own);
-        ([light, own], plan, grid, image("sun_normals", Owner::Input, four, grid))
+        (lights, plan, grid, image("sun_normals", Owner::Input, four, grid))
     });
     let mut in_sky = vec![
         ("normals", sky_normals),
@@ -88,7 +89,7 @@ pub fn preview(
         let bound = vec![
             ("normals", normals),
             ("coarse_radiance", image("sun_radiance", Owner::Input, of(plan), grid)),
-            ("share", made),
+            ("gathered_scalar", made),
         ];
         (lights.map(Unoccluded::of_sun), grid, is_grey(plan), bound, made)
     });

@@ -236,7 +236,7 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let direction = words.split(',').take(2).collect::<Vec<_>>().join(",");
     note_ignored("hillshade", &sun, false, args.map.global.quiet);
     if let (Some(device), false) = (&args.map.global.device, args.map.global.quiet) {
-        idle::note("device", device, "in a hillshade, which the host computes");
+        idle::note("device", device, "for hillshade, which always runs on the CPU");
     }
     let job = Job::new(&args.map, &args.map.surface, setup::of_neighbours)?;
     let plane = lambert(&job.field, setup::border(job.surface), sun);

@@ -7,7 +7,7 @@ use ridgelight::gpu::{
     Backed, Blocks, Frame, Headless, ImageArg, ImageState, Owned, Renderer, Timing, ViewOutputs,
     ViewRenderer, view_inputs,
 };
-use ridgelight::plan::{self, Map, Plan, View};
+use ridgelight::plan::{self, Map, View};
 use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 
@@ -50,7 +50,7 @@ impl Drawer {
         }
     }
 
-    /// Takes the viewpoint's tone; waits where it is another.
+    /// Sets the viewpoint's tone. If it changed, waits for the device.
     pub fn set_tone(&mut self, gpu: &mut Headless, viewpoint: Viewpoint<'_>) -> Result<()> {
         match (self, viewpoint) {
             (Self::Map(drawer), Viewpoint::Map(map)) => drawer.set_tone(gpu, map.tone),
@@ -166,7 +166,7 @@ impl ViewDrawer {
 pub(super) struct MapDrawer {
     renderer: Renderer,
     map: Map,
-    /// Of the steps.
+    /// The tone that `steps` were made for.
     tone: Tone,
     steps: Owned,
     voids: Option<Owned>,
@@ -217,9 +217,7 @@ impl MapDrawer {
     pub fn fits(&self, gpu: &Headless, map: &Map) -> bool {
         let own = self.renderer.plan();
         plan::map(map, &gpu.report().limits).is_ok_and(|plan| {
-            let constants =
-                |plan: &Plan| plan.passes.iter().map(|p| p.constants.clone()).collect::<Vec<_>>();
-            plan.resources == own.resources && constants(&plan) == constants(own)
+            plan.resources == own.resources && plan.passes[0].constants == own.passes[0].constants
         })
     }
 

@@ -52,7 +52,7 @@ pub struct Screen {
 pub enum Viewpoint<'a> {
     /// From straight above, byte for byte as in a PNG; the byte order is [`Screen::swaps`].
     Map(&'a Map),
-    /// From a camera, with the exposure of [`Tone::picture`](ridgelight::scene::Tone::picture).
+    /// From a camera: the view, and the exposure for [`Tone::picture`](ridgelight::scene::Tone::picture).
     Camera(&'a View, f32),
 }
 

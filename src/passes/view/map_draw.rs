@@ -20,7 +20,7 @@ pub struct Map {
     pub grid_points_per_pixel: f32,
     /// Whether pixels between the centres of texels have light between theirs (bilinear), below 2 texels per pixel.
     pub is_smooth: bool,
-    /// How radiance becomes codes; the exposure is 0 or at least 1e-30.
+    /// Tone curve to 8-bit codes. The exposure is 0, or from 1.2e-38 to 1e34: thresholds and light are then no denormals.
     pub tone: Tone,
     /// Whether the order of a pixel's four bytes is B, G, R, A instead of R, G, B, A.
     pub swaps: bool,
@@ -55,10 +55,10 @@ impl Map {
             ));
         }
         let Tone { exposure, shoulder } = self.tone;
-        let is_exposure = exposure == 0.0 || (1e-30..=f32::MAX).contains(&exposure);
+        let is_exposure = exposure == 0.0 || (f32::MIN_POSITIVE..=1e34).contains(&exposure);
         if !is_exposure || !(0.0..=1.0).contains(&shoulder) {
             let found = format!("exposure {exposure}, shoulder {shoulder}");
-            let expected = "an exposure of 0 or at least 1e-30, a shoulder from 0 to 1";
+            let expected = "an exposure of 0 or from 1.2e-38 to 1e34, a shoulder from 0 to 1";
             return Err(Error::setting("map: tone", found, expected));
         }
         Ok(())

@@ -8,7 +8,7 @@ pub(crate) fn plan(
     coarse: Grid,
     (of, suffix): (Unoccluded, &str),
     (albedo, grey, without_sun): (&Albedo, bool, bool),
-    is_share: bool,
+    is_scalar: bool,
     bound: &[(&str, ResourceId)],
 ) {
     let [r, g, b] = of.most;
@@ -17,7 +17,7 @@ pub(crate) fn plan(
             grey,
             without_sun,
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
-            is_share,
+            is_scalar,
         },
         suffix,
         "light without slopes, on the coarse grid",

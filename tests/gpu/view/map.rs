@@ -75,7 +75,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
     let smooth = Map { is_smooth: true, ..near };
     let voids: Vec<bool> = (0..37 * 23).map(|i| i % 11 == 3).collect();
     let smooth_ground = Map { has_voids: false, ..smooth };
-    let tones = [1.0, 0.0, 3.7, 1e-3, 1e30, 1e-30, 0.6, 1.0].map(Tone::picture);
+    let tones = [1.0, 0.0, 3.7, 1e-3, 1e34, f32::MIN_POSITIVE, 0.6, 1.0].map(Tone::picture);
     let clips = |exposure| Tone { exposure, shoulder: 1.0 };
     let maps = [at_once, grey, near, far, grey, grey, smooth, smooth_ground];
     let with_tones = maps.into_iter().zip(tones);
@@ -94,6 +94,30 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         let brighter = map_draw(&brighter, &light, voids);
         assert!(differing(&brighter, &want) > 10, "{map:?}");
     }
+}
+
+/// Beyond these exposures devices may flush thresholds or light to 0.
+#[test]
+fn maps_refuse_exposures_that_they_cannot_draw() {
+    let device = Device::new();
+    let limits = crate::limits_of(device.gpu.as_ref().expect("alive"));
+    let map = |exposure: f32, shoulder: f32| Map {
+        field: [4, 4],
+        has_colour: false,
+        has_voids: false,
+        size: [4, 4],
+        corner: [0.0; 2],
+        grid_points_per_pixel: 1.0,
+        is_smooth: false,
+        tone: Tone { exposure, shoulder },
+        swaps: false,
+    };
+    let is_drawn = |(exposure, shoulder)| plan::map(&map(exposure, shoulder), &limits).is_ok();
+    assert!([(0.0, 0.8), (f32::MIN_POSITIVE, 0.0), (1e34, 1.0)].into_iter().all(is_drawn));
+    let (nan, most) = (f32::NAN, f32::INFINITY);
+    let beyond =
+        [(1e-39, 0.8), (1.1e34, 0.8), (-1.0, 0.8), (nan, 0.8), (most, 0.8), (1.0, 1.1), (1.0, nan)];
+    assert!(!beyond.into_iter().any(is_drawn));
 }
 
 fn differing(a: &[[u8; 4]], b: &[[u8; 4]]) -> usize {

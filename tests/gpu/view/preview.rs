@@ -92,10 +92,12 @@ fn previews_match_the_cpu_reference() {
             lights: lights.clone(),
         };
         let (fine_scene, sky_scene) = (scene(&fine, &fine_albedo), scene(&sky_field, &sky_albedo));
+        // On its own grid the sun has no colour, and another irradiance.
+        let own_sun = Sun { irradiance: [0.7; 3], ..sun };
         let sun_scene = Scene {
             field: sun_field.clone(),
             surface: Surface::default(),
-            lights: Lights { suns: vec![sun], ..Lights::default() },
+            lights: Lights { suns: vec![own_sun], ..Lights::default() },
         };
         let gpu = device.gpu.as_mut().expect("alive");
         let limits: Limits = crate::limits_of(gpu);
@@ -153,7 +155,8 @@ fn previews_match_the_cpu_reference() {
         }
         if has_sun {
             // One sun of one colour on white ground is grey.
-            contents.push(texels(&sun_light, true));
+            let own_light: Vec<[f32; 3]> = sun_light.iter().map(|c| c.map(|v| 0.35 * v)).collect();
+            contents.push(texels(&own_light, true));
         }
         let pixels = gpu
             .with_frame(plan, &contents, |gpu, frame| {

@@ -36,11 +36,11 @@ pub enum Step {
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
-    /// Previews slow light from here on, as without a script; with numbers all light, and on grids of blocks of so many
-    /// grid points: sky, sun, slopes, while input goes on; and at rest, where there are six numbers.
-    Preview(Option<[Option<[usize; 3]>; 2]>),
-    /// Waits for the preview at rest.
-    Finer,
+    /// Turns previews on. `preview` alone: only for slow light, as without a script. `preview 8,6,4 [4,3,2]`: always, with these
+    /// sides of blocks (sky, sun, slopes) for the drag preview and, if given, the rest preview.
+    Preview(Option<([usize; 3], Option<[usize; 3]>)>),
+    /// Waits for the rest preview.
+    RestPreview,
     /// Draws until the light is the full one.
     Rest,
     /// Waits for input until this file exists, as without a script.
@@ -86,7 +86,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        command, places, shown, paths, preview, finer, rest, report, wait, opening or patience, with its values"
+                        command, places, shown, paths, preview, rest-preview, rest, report, wait, opening or patience, with its values"
                         .into(),
             }
         })?);
@@ -114,11 +114,9 @@ fn step(line: &str) -> Option<Step> {
         ["size", size] => Step::Size(pair(size)?.map(|v| v as u32)),
         ["lose"] => Step::Lose,
         ["preview"] => Step::Preview(None),
-        ["preview", sides] => Step::Preview(Some([Some(grids(sides)?), None])),
-        ["preview", sides, at_rest] => {
-            Step::Preview(Some([Some(grids(sides)?), Some(grids(at_rest)?)]))
-        }
-        ["finer"] => Step::Finer,
+        ["preview", drag] => Step::Preview(Some((grids(drag)?, None))),
+        ["preview", drag, rest] => Step::Preview(Some((grids(drag)?, Some(grids(rest)?)))),
+        ["rest-preview"] => Step::RestPreview,
         ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
         ["scene", file] => Step::Scene(file.into()),

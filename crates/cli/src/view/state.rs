@@ -176,7 +176,8 @@ impl State {
     }
 
     pub fn tone(&self) -> Tone {
-        Tone::picture(self.exposure)
+        // The range of maps.
+        Tone::picture(self.exposure.clamp(f32::MIN_POSITIVE, 1e34))
     }
 
     pub fn is_moving(&self) -> bool {

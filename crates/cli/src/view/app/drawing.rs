@@ -125,7 +125,7 @@ impl App<'_> {
                     self.due = self.due.max(1);
                 }
             }
-            Ok(Refined::Preview) => self.due = self.due.max(1),
+            Ok(Refined::Grids) => self.due = self.due.max(1),
             Ok(Refined::Full) => {
                 if self.state.has_coarse_exposure
                     && let Err(why) = shown.expose(&mut self.state, false)
@@ -168,8 +168,8 @@ impl App<'_> {
                 (shown.is_stale, shown.has_moved) = (false, false);
             }
         } else {
-            let was_preview = shown.preview.leave();
-            shown.is_stale |= was_preview;
+            let OpenWindow { screen, preview, .. } = shown;
+            shown.is_stale |= preview.leave(screen)?;
             edited.into_iter().for_each(|at| shown.preview.miss(at));
         }
         if !uses_preview && (shown.is_stale || moves || edited.is_some()) {
@@ -217,6 +217,12 @@ impl App<'_> {
     /// drawn and recomputes it. A second refusal before any light is complete is an error.
     fn fall_back(&mut self, why: Error) -> Result<()> {
         let Some(shown) = &mut self.shown else { return Err(why) };
+        // The rest preview is memory that the light may need.
+        if shown.preview.give_up_rest(&mut shown.screen)? {
+            shown.is_stale = true;
+            self.due = self.due.max(1);
+            return Ok(());
+        }
         // The comparison pictures restart too.
         let freed = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
         let is_again = std::mem::replace(&mut shown.has_fallen_back, true);

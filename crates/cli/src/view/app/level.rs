@@ -101,7 +101,7 @@ impl Level {
         self.is_light_new |= has_new_light;
         self.blocks.take_lights(&state.scene, &mut self.scene);
         if self.of == SUN {
-            // Without colour its images have one channel.
+            // The slopes apply its colour, so that its own images have one channel.
             let grey = |(_, sun): (usize, &Sun)| Sun { irradiance: [1.0; 3], ..*sun };
             let suns = first_sun(&self.scene).map(grey).into_iter().collect();
             self.scene.lights = Lights { suns, ..Lights::default() };
@@ -146,24 +146,28 @@ impl Level {
         self.are_normals_new = true;
     }
 
-    /// Runs all passes, or those that new heights alone need. The slot holds their times.
-    pub fn run(&mut self, screen: &mut Screen, borrowed: &[ImageArg]) -> Result<usize> {
+    /// Runs all passes, or those that the changes need. The slot, if there are any, holds their times.
+    pub fn run(&mut self, screen: &mut Screen, borrowed: &[ImageArg]) -> Result<Option<usize>> {
         self.runs += 1;
         let lit = self.lit.as_mut().expect("planned");
         let count = lit.plan().passes.len();
         let passes = match (self.are_heights_new, self.is_light_new) {
             // The light that slopes borrow is new in each frame.
             (true, false) if borrowed.is_empty() => after_new_heights(lit),
-            // A sun without tables.
+            // Only what a new plan changed: a sun has no tables.
             (false, _) if self.of == SUN => lit.renderer().passes_after(&[]),
             _ => (0..count).collect(),
         };
+        self.ran_all = passes.len() == count;
+        if passes.is_empty() {
+            self.is_light_new = false;
+            return Ok(None);
+        }
         let field = &self.scene.field;
         let heights = self.are_heights_new.then(|| (field.heights_m(), whole(field)));
         let slot = screen.light(lit, heights, (Work::Passes(&passes), borrowed))?;
-        self.ran_all = passes.len() == count;
         (self.are_heights_new, self.is_light_new) = (false, false);
-        Ok(slot)
+        Ok(Some(slot))
     }
 
     /// Plans the light of a coarse grid.
@@ -249,21 +253,19 @@ impl Level {
     }
 }
 
-/// Plans and lights a grid; the slopes show the light of the others. Returns the slot that holds its times.
-pub fn run_level(
+/// Plans a grid; the slopes come last, as they show the light of the other two. Returns the images that a grid borrows. New
+/// environments and normals wait for the device.
+pub fn plan_level(
     [sky, sun, slopes]: &mut [Level; GRIDS],
     of: usize,
     screen: &mut Screen,
     (state, limits): (&State, &Limits),
-) -> Result<usize> {
+) -> Result<Vec<ImageArg>> {
     if of == SLOPES {
-        let borrowed = slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)?;
-        return slopes.run(screen, &borrowed);
+        return slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits);
     }
-    // New environments wait for the device.
     let level = if of == SKY { sky } else { sun };
-    level.plan_light(screen, state, limits)?;
-    level.run(screen, &[])
+    level.plan_light(screen, state, limits).map(|()| Vec::new())
 }
 
 /// Plans the first of the grids that has no frame, so that input waits for one of them at most. Returns whether there was

@@ -1,7 +1,8 @@
 //! Answers to input: the light of coarse grids on the slopes of a finer one; and the full light in parts once input
 //! rests.
 
-use std::ops::Range;
+mod grids;
+
 use std::panic::resume_unwind;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -16,10 +17,11 @@ use super::super::brush::together;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
-use super::level::{GRIDS, Ground, Level, SKY, SLOPES, SUN, grid_work, plan_next, run_level, work};
-use super::sides::{DRAG, DRAGGED, FIXED_MS, LEAST_GRID, REST, RESTED, STAGES, Sides};
+use super::level::{GRIDS, Ground, Level, SKY, SLOPES, SUN, grid_work, work};
+use super::sides::{DRAG, FIXED_MS, KEPT_AT_REST, LEAST_GRID, REST, STAGES, Sides};
 use crate::render;
 use crate::setup::total_ns;
+use grids::run_levels;
 
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
@@ -28,16 +30,15 @@ const ANSWER_MS: f64 = 50.0;
 /// Refinement begins when input has rested for so long.
 pub(super) const PAUSE: Duration = Duration::from_millis(120);
 
-/// What a device does in a millisecond, in texels times azimuths of the full light, before anything was measured: lavapipe on two
-/// cores; a GPU.
+/// Assumed speeds until measured, in texels times azimuths of the full light per millisecond: lavapipe on two cores; a GPU.
 const CPU_RATE: f64 = 5e4;
 const GPU_RATE: f64 = 1e7;
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
-    /// Lights the preview at rest, from this grid on.
-    Finer(usize),
+    /// Lights the rest preview, from this grid on.
+    Rest(usize),
     /// Plans the full light.
     Begin,
     /// Its passes from this one on.
@@ -45,11 +46,12 @@ enum Next {
     Nothing,
 }
 
-/// What a part of the refinement has brought.
+/// What a step of the refinement completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refined {
     Nothing,
-    Preview,
+    /// The rest preview, or its grids, whose memory the panel counts.
+    Grids,
     Full,
 }
 
@@ -57,21 +59,21 @@ pub enum Refined {
 #[derive(Clone, Copy)]
 enum Running {
     Preview([Option<usize>; GRIDS]),
-    /// A grid of the preview at rest.
-    Finer(usize, usize),
+    /// Grid and slot of the rest preview.
+    Rest(usize, usize),
     Full(usize),
 }
 
 pub struct Preview {
-    /// While input goes on, and at rest.
+    /// Of the drag preview and of the rest preview.
     levels: [Option<[Level; GRIDS]>; STAGES],
     sides: Sides,
     /// Grids of a stage that a thread makes, during a drag or at rest.
     next_grids: Option<(usize, JoinHandle<Result<[Ground; GRIDS]>>)>,
-    /// Whether grids of the preview at rest are to be made.
-    lacks_finer: bool,
-    /// Whether the device refused them.
-    has_no_finer: bool,
+    /// Whether grids of the rest preview must be made.
+    needs_rest_grids: bool,
+    /// Whether they failed, or took memory that other work needed.
+    rest_grids_failed: bool,
     /// The thread that computes the errors of the last previews.
     next_errors: Option<JoinHandle<[Option<f64>; STAGES]>>,
     /// The stage that is shown.
@@ -92,10 +94,10 @@ pub struct Preview {
     /// Edited while no preview was in use: the levels lack it.
     missed: Option<Rectangle>,
     is_full_stale: bool,
-    /// Seconds from the last input to the picture of the preview at rest, and to the full light.
-    pub finer_s: Option<f64>,
+    /// Seconds from the last input to the picture of the rest preview, if there was one, and to the full light.
+    pub rest_s: Option<f64>,
     pub full_s: Option<f64>,
-    /// Errors of the stages against the full light when both were last computed: RMSE over the mean.
+    /// Errors of the two previews against the full light when both were last computed: RMSE over the mean.
     pub errors: [Option<f64>; STAGES],
 }
 
@@ -105,8 +107,8 @@ impl Preview {
             levels: [None, None],
             sides: Sides::new(is_cpu),
             next_grids: None,
-            lacks_finer: false,
-            has_no_finer: false,
+            needs_rest_grids: false,
+            rest_grids_failed: false,
             next_errors: None,
             shown: None,
             next: Next::Nothing,
@@ -119,7 +121,7 @@ impl Preview {
             edited: None,
             missed: None,
             is_full_stale: true,
-            finer_s: None,
+            rest_s: None,
             full_s: None,
             errors: [None; STAGES],
         }
@@ -133,8 +135,9 @@ impl Preview {
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids of the stages by the sides of their blocks: sky, sun, slopes. Times then decide nothing.
-    pub fn fix(&mut self, sides: Option<[Option<[usize; GRIDS]>; STAGES]>) {
+    /// Fixes the grids of the drag preview, and those of the rest preview if it is to have any, by the sides of their blocks: sky,
+    /// sun, slopes. Times then decide nothing.
+    pub fn fix(&mut self, sides: Option<([usize; GRIDS], Option<[usize; GRIDS]>)>) {
         self.sides.fixed = sides;
     }
 
@@ -144,12 +147,21 @@ impl Preview {
         self.next_grids = None;
     }
 
-    /// Shows the full light from now on. Returns whether it must be computed.
-    pub fn leave(&mut self) -> bool {
+    /// Shows the full light from now on, and frees the rest preview. Returns whether the light must be computed.
+    pub fn leave(&mut self, screen: &mut Screen) -> Result<bool> {
         (self.shown, self.next) = (None, Next::Nothing);
+        self.end_stage(REST, screen)?;
         let is_stale = self.is_full_stale || self.edited.is_some();
         (self.is_full_stale, self.edited) = (false, None);
-        is_stale
+        Ok(is_stale)
+    }
+
+    /// Frees the rest preview for good, as other work may need its memory. Returns whether there was one.
+    pub fn give_up_rest(&mut self, screen: &mut Screen) -> Result<bool> {
+        let had_one = self.levels[REST].is_some();
+        self.rest_grids_failed |= had_one;
+        self.end_stage(REST, screen)?;
+        Ok(had_one)
     }
 
     /// Whether the full light is not the current one where no preview is shown.
@@ -164,18 +176,15 @@ impl Preview {
 
     /// Whether work is left for the panel or for the next input.
     pub fn has_more(&self) -> bool {
-        let is_made = self.next_grids.is_some() || self.lacks_finer;
-        self.next_errors.is_some() || is_made || self.has_new_grids() || self.has_unplanned_finer()
+        let has_grids_to_make = self.next_grids.is_some() || self.needs_rest_grids;
+        let is_unlit = self.unlit(DRAG).or(self.unlit(REST)).is_some();
+        self.next_errors.is_some() || has_grids_to_make || is_unlit
     }
 
-    /// Whether grids for input were made that have not been lit yet.
-    fn has_new_grids(&self) -> bool {
-        self.levels[DRAG].iter().flatten().any(|level| level.is_used() && level.runs == 0)
-    }
-
-    /// Whether grids for rest were made that have no plans yet.
-    fn has_unplanned_finer(&self) -> bool {
-        self.levels[REST].iter().flatten().any(|level| level.is_used() && level.lit.is_none())
+    /// The first grid of a stage that was made but not lit yet.
+    fn unlit(&self, stage: usize) -> Option<usize> {
+        let levels = self.levels[stage].as_ref()?;
+        levels.iter().position(|level| level.is_used() && level.runs == 0)
     }
 
     /// Whether a preview is shown.
@@ -183,9 +192,14 @@ impl Preview {
         self.shown.is_some()
     }
 
-    /// Whether the preview at rest comes next.
-    pub fn awaits_finer(&self) -> bool {
-        matches!(self.next, Next::Finer(_))
+    /// Whether the rest preview comes next.
+    pub fn awaits_rest_preview(&self) -> bool {
+        matches!(self.next, Next::Rest(_))
+    }
+
+    /// Whether the rest preview is shown.
+    pub fn shows_rest_preview(&self) -> bool {
+        self.shown == Some(REST)
     }
 
     /// The preview, where it is shown.
@@ -210,18 +224,18 @@ impl Preview {
             .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
         let sun = match levels[SUN].scene.lights.suns.is_empty() {
             true => String::new(),
-            false => format!(", sun of {sun}"),
+            false => format!(", sun {sun}"),
         };
         let error = self.errors[stage]
-            .map_or_else(String::new, |e| format!(", RMSE {:.1} % at the last rest", 100.0 * e));
-        Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
+            .map_or_else(String::new, |e| format!(", last measured RMSE {:.1} %", 100.0 * e));
+        Some(format!("preview grids: sky {sky}{sun}, slopes {slopes}{error}"))
     }
 
     /// The share of the full light that is done, where it is being computed.
     pub fn progress(&self, full: Option<&Frame>) -> Option<f32> {
         match self.next {
             Next::Nothing => None,
-            Next::Finer(_) | Next::Begin => Some(0.0),
+            Next::Rest(_) | Next::Begin => Some(0.0),
             Next::Passes(done) => {
                 Some(done as f32 / full.map_or(1, |lit| lit.plan().passes.len().max(1)) as f32)
             }
@@ -237,6 +251,7 @@ impl Preview {
         (edited, has_new_light): (Option<Rectangle>, bool),
     ) -> Result<()> {
         self.read_times(state, &mut None);
+        (self.next, self.rest_s) = (Next::Nothing, None);
         self.edited = match (edited, self.edited) {
             (Some(a), Some(b)) => Some(together(a, b)),
             (a, b) => a.or(b),
@@ -251,7 +266,7 @@ impl Preview {
         self.changed = Instant::now();
         let missed = self.missed.take();
         if edited.is_some() || missed.is_some() || state.is_moving() {
-            // Made again at rest.
+            // Its heights are stale; it is made again after the full light.
             self.end_stage(REST, screen)?;
         }
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
@@ -259,110 +274,17 @@ impl Preview {
         levels.iter_mut().try_for_each(|level| level.take(state, (edited, has_new_light)))?;
         self.running = Some(Running::Preview(run_levels(levels, screen, state, limits)?));
         self.shown = Some(DRAG);
-        self.next = match self.levels[REST].is_some() && !self.has_unplanned_finer() {
+        let has_rest_preview = self.levels[REST].is_some() && self.unlit(REST).is_none();
+        self.next = match has_rest_preview && self.sides.has_rest() {
             _ if state.is_moving() => Next::Nothing,
-            true => Next::Finer(SKY),
+            true => Next::Rest(SKY),
             false => Next::Begin,
         };
         Ok(())
     }
 
-    /// Starts a thread that makes the grids of the first preview, if there will be one.
-    pub fn prepare(&mut self, state: &State) {
-        if self.is_needed(state)
-            && let Some(sides) = self.other_grids(state, DRAG, DRAGGED)
-        {
-            self.start_grids(state, DRAG, sides);
-        }
-    }
-
-    /// Whether the thread that makes grids still runs.
-    pub fn makes_grids(&self) -> bool {
-        self.next_grids.as_ref().is_some_and(|(_, thread)| !thread.is_finished())
-    }
-
-    /// Makes the levels if there are none and no thread has made them. If the present ones are too slow for a drag, a thread makes
-    /// others, and the first input after it finishes uses them. Edited and animated heights, and sides that a script gives, wait for
-    /// new levels.
-    fn fit(&mut self, screen: &mut Screen, state: &State, is_edited: bool) -> Result<()> {
-        let Some(sides) = self.other_grids(state, DRAG, DRAGGED) else { return Ok(()) };
-        let waits = self.sides.are_fixed() || state.is_moving() || is_edited;
-        if waits {
-            self.next_grids = None;
-        }
-        if self.take_grids(screen)? == Some(DRAG) {
-            return Ok(());
-        }
-        if waits || self.levels[DRAG].is_none() {
-            self.end_stage(DRAG, screen)?;
-            self.next_grids = None;
-            self.levels[DRAG] = Some(levels_of(grounds(&state.scene, sides)?));
-        } else {
-            self.start_grids(state, DRAG, sides);
-        }
-        Ok(())
-    }
-
-    /// Starts a thread that makes other grids, unless one is running.
-    fn start_grids(&mut self, state: &State, stage: usize, sides: [usize; GRIDS]) {
-        if self.next_grids.is_none() {
-            let scene = state.scene.clone();
-            let thread = std::thread::spawn(move || grounds(&scene, sides));
-            self.next_grids = Some((stage, thread));
-        }
-    }
-
-    /// Takes the grids that a thread has made. Returns their stage.
-    fn take_grids(&mut self, screen: &mut Screen) -> Result<Option<usize>> {
-        let made = self.next_grids.take_if(|(_, thread)| thread.is_finished());
-        let Some((stage, thread)) = made else { return Ok(None) };
-        let grounds = joined(thread)?;
-        self.end_stage(stage, screen)?;
-        self.levels[stage] = Some(levels_of(grounds));
-        Ok(Some(stage))
-    }
-
-    /// Sides of the blocks of a stage's grids that fit the time, unless those in use are kept.
-    fn other_grids(
-        &self,
-        state: &State,
-        stage: usize,
-        kept_at: Range<f64>,
-    ) -> Option<[usize; GRIDS]> {
-        let levels = self.levels[stage].as_ref();
-        let kept = levels.map(|levels| levels.each_ref().map(|level| level.blocks.side));
-        self.sides.others(state, (stage, kept), kept_at)
-    }
-
-    /// Continues the change to other grids: takes them once they are made, then plans one at a time. Those for input are lit
-    /// once, as a driver may compile the shaders only then. Those for rest come last.
-    fn change_grids(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        if let Some(stage) = self.take_grids(screen)? {
-            let mut levels = self.levels[stage].iter_mut().flatten();
-            return levels.try_for_each(|level| level.take(state, (None, true)));
-        }
-        if self.has_new_grids() {
-            let levels = self.levels[DRAG].as_mut().expect("has new grids");
-            if !plan_next(levels, screen, state, limits)? {
-                run_levels(levels, screen, state, limits)?;
-            }
-        } else if self.has_unplanned_finer() {
-            let levels = self.levels[REST].as_mut().expect("has unplanned grids");
-            if plan_next(levels, screen, state, limits).is_err() {
-                self.has_no_finer = true;
-                self.end_stage(REST, screen)?;
-            }
-        } else if self.lacks_finer && self.next_grids.is_none() {
-            self.lacks_finer = false;
-            if let Some(sides) = self.other_grids(state, REST, RESTED) {
-                self.start_grids(state, REST, sides);
-            }
-        }
-        Ok(())
-    }
-
-    /// Goes on with the preview at rest and the full light, by a part that keeps the device busy for about [`PART_MS`]. The device
-    /// is idle.
+    /// The next step: a grid of the rest preview, or about [`PART_MS`] of the full light. For when the device is idle. Returns what is
+    /// ready to be shown.
     pub fn refine(
         &mut self,
         screen: &mut Screen,
@@ -374,9 +296,23 @@ impl Preview {
             self.errors = joined(thread);
         }
         match self.next {
-            Next::Nothing => self.change_grids(screen, state, limits)?,
-            Next::Begin | Next::Finer(_) if self.changed.elapsed() < PAUSE => {}
-            Next::Finer(of) => return self.light_finer(screen, of, (state, limits)),
+            Next::Nothing => {
+                let full_bytes = full.as_ref().map_or(0, |lit| lit.plan().bytes());
+                if self.change_grids(screen, state, (full_bytes, limits))? {
+                    return Ok(Refined::Grids);
+                }
+            }
+            Next::Begin | Next::Rest(_) if self.changed.elapsed() < PAUSE => {}
+            Next::Rest(of) => {
+                if !self.light_rest_grid(screen, of, (state, limits))? {
+                    self.next = Next::Begin;
+                } else if of < SLOPES {
+                    self.next = Next::Rest(of + 1);
+                } else {
+                    (self.shown, self.next) = (Some(REST), Next::Begin);
+                    return Ok(Refined::Grids);
+                }
+            }
             Next::Begin => self.begin_full(screen, state, (full, limits))?,
             Next::Passes(done) => {
                 let lit = full.as_mut().expect("planned");
@@ -389,31 +325,6 @@ impl Preview {
         Ok(Refined::Nothing)
     }
 
-    /// Lights a grid of the preview at rest, which is shown after the last one. It is left out where the device has no room for it.
-    fn light_finer(
-        &mut self,
-        screen: &mut Screen,
-        of: usize,
-        (state, limits): (&State, &Limits),
-    ) -> Result<Refined> {
-        let levels = self.levels[REST].as_mut().expect("made before");
-        levels[of].take(state, (None, true))?;
-        if levels[of].is_used() {
-            let Ok(slot) = run_level(levels, of, screen, (state, limits)) else {
-                self.has_no_finer = true;
-                self.next = Next::Begin;
-                return self.end_stage(REST, screen).map(|()| Refined::Nothing);
-            };
-            self.running = Some(Running::Finer(of, slot));
-        }
-        if of < SLOPES {
-            self.next = Next::Finer(of + 1);
-            return Ok(Refined::Nothing);
-        }
-        (self.shown, self.next) = (Some(REST), Next::Begin);
-        Ok(Refined::Preview)
-    }
-
     /// Plans the full light, or edits it at once.
     fn begin_full(
         &mut self,
@@ -423,6 +334,7 @@ impl Preview {
     ) -> Result<()> {
         let plan = in_parts(state, limits, self.rate)?;
         let is_new = replan(screen, full, plan, &state.scene)?;
+        self.rest_grids_failed &= !is_new;
         let lit = full.as_mut().expect("made by replan");
         let field = &state.scene.field;
         let can_edit = !is_new && !self.is_full_stale && !lit.plan().edit_passes.is_empty();
@@ -480,10 +392,10 @@ impl Preview {
             })
         }));
         // For the next input, while there is time.
-        if let Some(sides) = self.other_grids(state, DRAG, RESTED) {
+        if let Some(sides) = self.other_grids(state, DRAG, KEPT_AT_REST) {
             self.start_grids(state, DRAG, sides);
         }
-        self.lacks_finer = !self.has_no_finer;
+        self.needs_rest_grids = !self.rest_grids_failed;
         Ok(())
     }
 
@@ -517,13 +429,13 @@ impl Preview {
                     self.complete_times = Some(std::mem::take(&mut self.times));
                 }
             }
-            Some(Running::Finer(of, slot)) => {
+            Some(Running::Rest(of, slot)) => {
                 let level = self.levels[REST].as_mut().map(|levels| &mut levels[of]);
                 let lit = level.and_then(|level| level.lit.as_mut());
                 let times = lit.and_then(|lit| lit.renderer().timings(slot));
                 self.times.extend(times.into_iter().flatten());
-                if of == SLOPES {
-                    self.finer_s = Some(self.changed.elapsed().as_secs_f64());
+                if of == SLOPES && self.shows_rest_preview() {
+                    self.rest_s = Some(self.changed.elapsed().as_secs_f64());
                     self.complete_times = Some(std::mem::take(&mut self.times));
                 }
             }
@@ -556,50 +468,12 @@ impl Preview {
         self.running = None;
         (0..STAGES).map(|stage| self.end_stage(stage, screen)).fold(Ok(()), Result::and)
     }
-
-    /// Frees the grids of a stage.
-    fn end_stage(&mut self, stage: usize, screen: &mut Screen) -> Result<()> {
-        self.running.take_if(|running| match running {
-            Running::Preview(_) => stage == DRAG,
-            Running::Finer(..) => stage == REST,
-            Running::Full(_) => false,
-        });
-        self.shown.take_if(|shown| *shown == stage);
-        let frames = self.levels[stage].take().into_iter().flatten().filter_map(|level| level.lit);
-        frames.map(|lit| screen.end(lit)).fold(Ok(()), Result::and)
-    }
 }
 
 /// The result of a finished thread.
 fn joined<T>(thread: JoinHandle<T>) -> T {
     // Resumes the thread's panic, which has already been reported.
     thread.join().unwrap_or_else(|panic| resume_unwind(panic))
-}
-
-/// The grids of blocks of these sides.
-fn grounds(scene: &Scene, sides: [usize; GRIDS]) -> Result<[Ground; GRIDS]> {
-    let ground = |of: usize| Ground::new(scene, of, sides[of]);
-    Ok([ground(SKY)?, ground(SUN)?, ground(SLOPES)?])
-}
-
-/// Lights the grids. Returns the slots that hold their times.
-fn run_levels(
-    levels: &mut [Level; GRIDS],
-    screen: &mut Screen,
-    state: &State,
-    limits: &Limits,
-) -> Result<[Option<usize>; GRIDS]> {
-    let mut slots = [None; GRIDS];
-    for (of, slot) in slots.iter_mut().enumerate() {
-        if levels[of].is_used() {
-            *slot = Some(run_level(levels, of, screen, (state, limits))?);
-        }
-    }
-    Ok(slots)
-}
-
-fn levels_of([sky, sun, slopes]: [Ground; GRIDS]) -> [Level; GRIDS] {
-    [Level::new(SKY, sky), Level::new(SUN, sun), Level::new(SLOPES, slopes)]
 }
 
 /// RMSE over the mean, R, G, B of the means of blocks.

@@ -9,6 +9,7 @@ use winit::dpi::PhysicalSize;
 use super::super::script::Step;
 use super::compare::MOST_PATHS;
 use super::drawing::places;
+use super::preview::Preview;
 use super::saving::save_pixels;
 use super::{App, OpenWindow};
 
@@ -75,10 +76,15 @@ impl App<'_> {
                 }
                 None
             }
-            Step::Finer => {
+            Step::RestPreview => {
                 self.advance()?;
-                let awaits = |shown: &OpenWindow| shown.preview.awaits_finer();
-                self.shown.as_ref().is_some_and(awaits).then_some(Step::Finer)
+                let preview = self.shown.as_ref().map(|shown| &shown.preview);
+                let awaits = preview.is_some_and(Preview::awaits_rest_preview);
+                if !awaits && !preview.is_some_and(Preview::shows_rest_preview) {
+                    let expected = "grids of its own, after a full light";
+                    return Err(Error::setting("--script: rest-preview", "none", expected));
+                }
+                awaits.then_some(Step::RestPreview)
             }
             Step::Rest => {
                 self.advance()?;
@@ -243,18 +249,17 @@ impl App<'_> {
         if let (Some(slowest), Some(preview)) = (answers.iter().copied().reduce(f64::max), preview)
         {
             let after = |what: &str, s: Option<f64>| {
-                s.map_or_else(String::new, |s| format!("; {what} after {s:.2} s"))
+                s.map_or_else(String::new, |s| format!("; {what} {s:.2} s"))
             };
-            let finer = after("preview at rest", preview.finer_s);
-            let full = finer + &after("full light", preview.full_s);
-            let of_stages = ["RMSE", "at rest"].into_iter().zip(preview.errors);
-            let share: String = of_stages
-                .filter_map(|(name, error)| Some(format!(", {name} {:.2} %", 100.0 * error?)))
-                .collect();
+            let rest = after("rest preview", preview.rest_s);
+            let full = rest + &after("full light", preview.full_s);
+            let found = preview.errors.iter().flatten().map(|e| format!("{:.2}", 100.0 * e));
+            let found = found.collect::<Vec<_>>().join(" / ");
+            let errors = if found.is_empty() { found } else { format!("; RMSE {found} %") };
             crate::say!(
-                "{what}input to picture, median of {} {:.1} ms, longest {slowest:.1} ms{full}{share}",
-                answers.len(),
+                "{what}input to picture, median {:.1} ms, longest {slowest:.1} ms ({}){full}{errors}",
                 median(answers.clone()),
+                answers.len(),
             );
         }
         crate::say!(

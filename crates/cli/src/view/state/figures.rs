@@ -47,7 +47,7 @@ pub struct Figures {
     pub frame_ms: Option<f64>,
     /// Memory of the light and of the previews.
     pub bytes: u64,
-    /// Settings of the shown light; none of a preview, which has others.
+    /// Settings of the full light; none while a preview is shown, which uses its own.
     pub used: Option<Vec<(String, String)>>,
     /// How the shown light was computed, where it is not the full one.
     pub preview: Option<String>,
@@ -194,7 +194,7 @@ impl State {
         self.settings().map(line).collect()
     }
 
-    /// Why the chosen setting changes nothing in the shown light, if so.
+    /// Why the chosen setting has no effect on the shown light; none if it has one, or while a preview is shown.
     pub fn notes(&self, figures: &Figures) -> Vec<String> {
         let Some(used) = &figures.used else { return Vec::new() };
         let chosen = self.settings().filter(|(setting, _, is_chosen)| {

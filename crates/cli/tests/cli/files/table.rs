@@ -11,8 +11,8 @@ struct Row {
     heights: &'static str,
     nodata: &'static str,
     unit: &'static str,
-    /// What tests compare with GDAL's reading, functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs, with the arrays
-    /// that NumPy wrote, functions `numpy_...` of python.rs, or with those of OpenEXR, validators.rs.
+    /// What tests compare, and with what: GDAL (`gdal_...` in gdal_inputs.rs and gdal_positions.rs), NumPy (`numpy_...` in python.rs)
+    /// or OpenEXR (validators.rs).
     compared: &'static str,
 }
 

@@ -55,8 +55,8 @@ fn rio_cogeo_accepts_maps() {
     assert!(error.contains("not tiled"), "{error}");
 }
 
-/// Heights in f16, f32 and u32, in scan lines of six compressions, have the values that OpenEXR's own library reads, as one of them
-/// rounds f32 to 24 bits; and it reads the values of our layers.
+/// We read the values that the OpenEXR library reads: f16, f32 and u32, six compressions. Its reading is the reference because PXR24
+/// rounds f32 to 24 bits. The library also reads the values of our `.exr` files.
 #[test]
 #[ignore = "needs OpenEXR of PyPI: tools/test --part validators"]
 fn openexr_has_the_same_values() {

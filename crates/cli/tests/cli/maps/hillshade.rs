@@ -66,7 +66,7 @@ fn hillshade_has_voids_and_a_sun_from_the_north_west() {
     assert!(plain.status == Some(0) && !plain.err.contains("--device"), "{}", plain.err);
     let words = ["hillshade", "v.asc", "-o", "v.png", "--device", "none"];
     let noted = folder.run_without_driver(&words);
-    let note = "note: --device none changes nothing in a hillshade, which the host computes";
+    let note = "note: --device none changes nothing for hillshade, which always runs on the CPU";
     assert!(noted.status == Some(0) && noted.err.contains(note), "{}", noted.err);
     let (kind, codes) = codes(&folder.path("v.png"));
     let lit = [level.round() as u8, 255];
