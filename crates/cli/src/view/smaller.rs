@@ -191,7 +191,7 @@ impl Blocks {
             field: [coarse.cols(), coarse.rows()].map(|n| n as u32),
             has_voids: coarse.voids().is_some(),
             corner: full.corner.map(|c| c / side),
-            grid_points_per_pixel: full.grid_points_per_pixel / side,
+            grid_points_per_pixel: (full.grid_points_per_pixel / side).max(1e-3),
             is_smooth: true,
             ..*full
         }

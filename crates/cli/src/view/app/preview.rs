@@ -156,7 +156,7 @@ impl Preview {
         Ok(is_stale)
     }
 
-    /// Frees the rest preview for good, as other work may need its memory. Returns whether there was one.
+    /// Frees the rest preview until the full light needs other memory, as other work may need it. Returns whether there was one.
     pub fn give_up_rest(&mut self, screen: &mut Screen) -> Result<bool> {
         let had_one = self.levels[REST].is_some();
         self.rest_grids_failed |= had_one;
@@ -333,8 +333,10 @@ impl Preview {
         (full, limits): (&mut Option<Frame>, &Limits),
     ) -> Result<()> {
         let plan = in_parts(state, limits, self.rate)?;
+        let bytes = |full: &Option<Frame>| full.as_ref().map(|lit| lit.plan().bytes());
+        let before = bytes(full);
         let is_new = replan(screen, full, plan, &state.scene)?;
-        self.rest_grids_failed &= !is_new;
+        self.rest_grids_failed &= bytes(full) == before;
         let lit = full.as_mut().expect("made by replan");
         let field = &state.scene.field;
         let can_edit = !is_new && !self.is_full_stale && !lit.plan().edit_passes.is_empty();

@@ -16,6 +16,8 @@ const MOST_CELLS: u32 = 1024;
 
 /// The same while something moves on a software driver.
 const MOVING_CELLS: u32 = 192;
+/// Most grid points a pixel, as [`Map`] allows.
+const MOST_PER_PIXEL: f64 = 1e3;
 
 /// Most steps along a ray to the ground.
 const MOST_STEPS: f64 = 4096.0;
@@ -75,9 +77,12 @@ impl Viewpoint {
         self.place.unwrap_or_else(|| {
             let field = [field.cols(), field.rows()].map(|n| n as f64);
             let needed = (field[0] / f64::from(size[0])).max(field[1] / f64::from(size[1]));
-            // Whole pixels per texel where there are enough.
-            let grid_points_per_pixel =
-                if needed <= 1.0 { 1.0 / (1.0 / needed).floor() } else { needed };
+            // Whole pixels per texel where there are enough; of a field that is too large for the window, its middle.
+            let grid_points_per_pixel = if needed <= 1.0 {
+                1.0 / (1.0 / needed).floor()
+            } else {
+                needed.min(MOST_PER_PIXEL)
+            };
             Place { middle: field.map(|n| n / 2.0), grid_points_per_pixel }
         })
     }
@@ -315,6 +320,18 @@ mod tests {
         };
         let heights: Vec<f64> = (0..40 * 30).map(height).collect();
         HeightField::new(30, 40, &heights, [2.0, 3.0], None).unwrap()
+    }
+
+    /// A window of one pixel shows the middle of a field that is wider than 1,000 grid points.
+    #[test]
+    fn a_window_may_be_as_small_as_a_pixel() {
+        let (cols, limits) = (1201, Limits::boundless(true, 1 << 30));
+        let field = HeightField::new(2, cols, &vec![0.0; 2 * cols], [1.0; 2], None).unwrap();
+        for size in [[1, 1], [2, 2]] {
+            let options = (size, false, false);
+            let map = Viewpoint::default().map(&field, options, Tone::default());
+            assert!(ridgelight::plan::map(&map, &limits).is_ok(), "{map:?}");
+        }
     }
 
     /// A visible place on the ground maps to a pixel and back: from above to rounding, by a camera

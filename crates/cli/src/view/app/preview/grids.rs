@@ -126,7 +126,7 @@ impl Preview {
         Ok(false)
     }
 
-    /// Lights a grid of the rest preview. Where that fails, the rest preview is freed until the full light has another plan, and the
+    /// Lights a grid of the rest preview. Where that fails, the rest preview is freed until the full light needs other memory, and the
     /// result is false.
     pub(super) fn light_rest_grid(
         &mut self,
