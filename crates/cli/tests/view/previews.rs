@@ -1,6 +1,6 @@
 //! Previews: pictures that answer input before the full light is complete.
 
-use super::{Display, Folder, LIT, apart, assert_same, code, colours};
+use super::{Display, Folder, LIT, apart, assert_same, code, colours, silent};
 
 /// RMSE of a picture in some columns and rows, over its own mean there.
 fn error(folder: &Folder, shown: &str, full: &str, [left, top, cols, rows]: [usize; 4]) -> f64 {
@@ -177,4 +177,22 @@ fn gpu_rest_previews_are_finer() {
         // While a preview is shown, the panel does not report that a setting changes nothing.
         assert!(text.contains("> azimuths") && !text.contains("changes nothing"), "{text}");
     }
+}
+
+/// The rest preview is left out where it, the drag preview and the full light together exceed the memory budget, which the full light
+/// alone does not. With four times the budget it is shown.
+#[test]
+fn gpu_rest_previews_stay_within_the_memory_budget() {
+    let (folder, display) = (Folder::new(), Display::new());
+    write_large(&folder);
+    let script =
+        "preview 8,6,4 4,3,2\nframes 1\nrest\nkey shift+right\nframes 1\nrest-preview\nrest\n";
+    let window = |mib: u32| {
+        let args = format!("large.asc {LIT} --size 512x512 --memory-budget {mib}MiB");
+        folder.window(&display, &args, script)
+    };
+    let said = window(30).output().unwrap();
+    let why = String::from_utf8(said.stderr).unwrap();
+    assert!(!said.status.success() && why.contains("rest-preview: found none"), "{why}");
+    silent(window(120));
 }
