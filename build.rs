@@ -2,7 +2,7 @@
 //!
 //! With the feature `glslang` (default) or `shaderc`, the SPIR-V comes from the GLSL of `shaders_glsl/`. Without
 //! either it is that of `shaders_glsl/compiled/shaders.spv`, which needs no C++ compiler. `tools/shaders` writes that
-//! file from the GLSL; `tools/shaders --check` fails where the two differ.
+//! file from the GLSL; `tools/shaders --check` fails where the two differ. The shaders of tests are handled alike.
 
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
 #[path = "build/compile.rs"]
@@ -20,7 +20,6 @@ fn main() {
     println!("cargo:rerun-if-changed=build");
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     generate::core(&out);
-    #[cfg(any(feature = "glslang", feature = "shaderc"))]
     generate::decoders(&out);
 }
 

@@ -26,7 +26,8 @@ pub(crate) fn core(out: &Path) {
     let mut all_words = Vec::new();
     let (mut names, mut graphics) = (Vec::new(), Vec::new());
     let sources = shaders_in(folder);
-    for (path, words) in sources.iter().zip(modules(&sources)) {
+    for (path, words) in sources.iter().zip(modules(&sources, "shaders_glsl/compiled/shaders.spv"))
+    {
         let name = name_of(path);
         let found = reflect(&name, &words, &mut layouts);
         let source = path.to_string_lossy().replace('\\', "/");
@@ -48,34 +49,39 @@ pub(crate) fn core(out: &Path) {
     writeln!(table, "\n/// Words of all shaders together.").unwrap();
     writeln!(table, "const WORD_COUNT: usize = {};", all_words.len()).unwrap();
     write(&out.join("shaders.rs"), table.as_bytes());
-    let bytes: Vec<u8> = all_words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    write(&out.join("shaders.spv"), &bytes);
+    write_modules(&out.join("shaders.spv"), std::iter::once(&all_words[..]));
 }
 
 /// The SPIR-V of each shader, from its GLSL, with its name in it.
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
-fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
+fn modules(sources: &[PathBuf], _: &str) -> Vec<Vec<u32>> {
     sources.iter().map(|path| named(compile(path), &name_of(path))).collect()
 }
 
 /// The SPIR-V of each shader, from the committed file: [`reflect`] refuses a module of another name.
 #[cfg(not(any(feature = "glslang", feature = "shaderc")))]
-fn modules(sources: &[PathBuf]) -> Vec<Vec<u32>> {
+fn modules(sources: &[PathBuf], committed: &str) -> Vec<Vec<u32>> {
     // The first word of a module. Elsewhere it would give one module too many, which is refused.
     const MAGIC: u32 = 0x0723_0203;
-    let path = Path::new("shaders_glsl/compiled/shaders.spv");
-    let bytes = super::read(path);
+    println!("cargo:rerun-if-changed={committed}");
+    let bytes = super::read(Path::new(committed));
     let words: Vec<u32> =
         bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
     let parts = words.split(|word| *word == MAGIC).skip(1);
     let modules: Vec<_> = parts.map(|rest| [&[MAGIC][..], rest].concat()).collect();
     if modules.len() != sources.len() {
-        let (path, found, expected) = (path.display(), modules.len(), sources.len());
+        let (found, expected) = (modules.len(), sources.len());
         fail(&format!(
-            "{path}: found {found} modules, expected {expected}, one per shader; run tools/shaders"
+            "{committed}: found {found} modules, expected {expected}, one per shader; run tools/shaders"
         ));
     }
     modules
+}
+
+/// Modules one after the other, as `tools/shaders` commits them.
+fn write_modules<'a>(path: &Path, modules: impl Iterator<Item = &'a [u32]>) {
+    let bytes: Vec<u8> = modules.flatten().flat_map(|word| word.to_le_bytes()).collect();
+    write(path, &bytes);
 }
 
 /// The shaders in a folder and in the folders inside it, sorted by file name.
@@ -99,19 +105,20 @@ fn find(folder: &Path, sources: &mut Vec<PathBuf>) {
     }
 }
 
-/// Shaders of tests (`tests/gpu/bake/decoders/shaders/*.comp`, where present) as `NAME.spv`; the library does not contain
-/// them.
-#[cfg(any(feature = "glslang", feature = "shaderc"))]
+/// Shaders of tests, where the tests are present, as `NAME.spv`; the library does not contain them.
 pub(crate) fn decoders(out: &Path) {
     let folder = Path::new("tests/gpu/bake/decoders/shaders");
     if !folder.is_dir() {
         return;
     }
     println!("cargo:rerun-if-changed={}", folder.display());
-    for path in shaders_in(folder) {
-        let bytes: Vec<u8> = compile(&path).iter().flat_map(|word| word.to_ne_bytes()).collect();
-        write(&out.join(name_of(&path)).with_extension("spv"), &bytes);
+    let sources = shaders_in(folder);
+    let modules = modules(&sources, "tests/gpu/bake/decoders/shaders.spv");
+    for (path, words) in sources.iter().zip(&modules) {
+        let file = out.join(name_of(path)).with_extension("spv");
+        write_modules(&file, std::iter::once(&words[..]));
     }
+    write_modules(&out.join("decoders.spv"), modules.iter().map(|words| &words[..]));
 }
 
 /// The shader stage of a file, by its extension.

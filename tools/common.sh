@@ -9,6 +9,13 @@ demo_field=(assets/mt_washington_256.png --cell "66,92.6")
 # shellcheck disable=SC2034
 demo_scene=("${demo_field[@]}" --env assets/sky_512x256.hdr --sun "300,10,0.53,15")
 
+# Of every shader with its path, and of how they are compiled. tools/shaders writes it beside the SPIR-V.
+glsl_checksum_file=shaders_glsl/compiled/glsl.sha256
+glsl_checksum() {
+    find shaders_glsl tests/gpu/bake/decoders/shaders build/compile.rs -type f ! -path 'shaders_glsl/compiled/*' -print0 |
+        LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
+}
+
 # Non-root users of Debian have no sbin on their PATH, and ldconfig lives there.
 PATH=$PATH:/usr/sbin:/sbin
 

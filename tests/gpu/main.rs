@@ -5,8 +5,6 @@
 mod bake {
     pub mod cpu_reference;
     mod curved;
-    // Its shaders are compiled from GLSL only.
-    #[cfg(any(feature = "glslang", feature = "shaderc"))]
     mod decoders;
     mod scatter;
     mod scatter_views;
