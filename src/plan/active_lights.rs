@@ -180,11 +180,12 @@ impl<'a> ActiveLights<'a> {
         self.specular.is_some() && (self.sky.is_some() || self.environment.is_some())
     }
 
-    /// The lobe that reflects sky and environment by tables: one for all texels, without bounces.
+    /// The lobe that reflects sky and environment by tables: one for all texels.
     pub(super) fn by_slices(&self, quality: &Quality) -> Option<PhongSpecular> {
-        let is_direct = quality.basis != Basis::Sh && quality.bounces.count == 0;
         match self.specular {
-            Some(Specular::Constant(phong)) if self.has_specular_around() && is_direct => {
+            Some(Specular::Constant(phong))
+                if self.has_specular_around() && quality.basis != Basis::Sh =>
+            {
                 Some(*phong)
             }
             _ => None,

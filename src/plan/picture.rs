@@ -22,8 +22,8 @@ use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Held, Lists, prepare, settings};
 use crate::scene::{
-    Albedo, Basis, Border, BounceEngine, Bounces, Environment, LightBasis, Method, Quality, Scene,
-    Specular, Wedges,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, LightBasis, Method,
+    Quality, Scene, Specular, Wedges,
 };
 use crate::{Error, Result};
 use drawing::Drawing;
@@ -150,8 +150,17 @@ fn with_cache(
     }
     let (mut tables, mut harmonics) = (None, None);
     let mirrored = active.by_slices(quality);
-    let has_specular = active.has_specular_around() && mirrored.is_none();
-    if has_specular || active.environment.is_some() && quality.basis == Basis::Sh {
+    // First, as their azimuths are the first constants.
+    let slices = mirrored.map(|phong| {
+        let lit = (active.environment, surface.border);
+        let of = (phong, lists[0].as_slice());
+        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, (quality, limits), of)
+    });
+    let has_diffuse = active.environment.is_some() && quality.basis == Basis::Sh;
+    // The light that arrives at a texel, which its vector of exit radiance reflects.
+    let keeps_vectors = bounces > 0 && quality.bounces.specular != BounceSpecular::Scalar;
+    let has_specular = active.has_specular_around() && (mirrored.is_none() || keeps_vectors);
+    if has_diffuse || has_specular {
         active.environment.map_or(Ok(()), Environment::check_series)?;
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
             return Err(Error::setting(
@@ -160,9 +169,11 @@ fn with_cache(
                 "`method brute-force`, which is exact in every azimuth",
             ));
         }
-        let (lit, settings) = ((active.environment, surface.border), (quality, has_specular));
+        let lit = (active.environment, surface.border);
+        let settings = (quality, [has_diffuse, has_specular]);
         harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
-    } else if let Some(environment) = active.environment {
+    }
+    if let Some(environment) = active.environment.filter(|_| !has_diffuse) {
         let lit = (environment, surface.border);
         tables = Some(Tables::make(&mut builder, lit, quality));
     }
@@ -170,11 +181,6 @@ fn with_cache(
     if wanted.eye_m.is_some() && active.specular.is_some() && bounces > 0 {
         specular::check_viewed(quality)?;
     }
-    let slices = mirrored.map(|phong| {
-        let lit = (active.environment, surface.border);
-        let of = (phong, lists[0].as_slice());
-        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, (quality, limits), of)
-    });
     if active.environment.is_none() && active.sky.is_some() && slices.is_none() {
         notes.push("no environment: no table".into());
     }
@@ -187,7 +193,8 @@ fn with_cache(
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // Harmonics keep the visibility and a sky keeps its sum, so neither needs its lattices.
-    let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
+    let reads_lattices = tables.is_some() || slices.is_some();
+    let kept_from = keeps.then_some(usize::from(harmonics.is_some() && !reads_lattices));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &active, wanted);
     let (mut held, mut of_lights) =
         (Held { limits, kept_from, nodes, shadows: Vec::new(), later_bytes: 0 }, Vec::new());
@@ -263,7 +270,9 @@ fn with_cache(
     if let Some(soft) = &soft {
         passes::sphere_sh_shade::check(surface.border, field, soft)?;
     }
-    let mut used = used(quality, sweep, surface.border, &active, &images, soft.as_ref());
+    let has_series = harmonics.is_some();
+    let of_scene = (surface.border, &active, has_series);
+    let mut used = used(quality, sweep, of_scene, &images, soft.as_ref());
     if !of_lights.is_empty() && !has_others {
         used.push(("method".into(), Method::Auto.name().into()));
     }
@@ -340,17 +349,11 @@ fn marched_nodes(
     nodes.unwrap_or(Nodes { stride: 1 })
 }
 
-/// Whether specular alone needs harmonics.
-fn harmonics_alone(active: &ActiveLights<'_>, quality: &Quality) -> bool {
-    quality.basis == Basis::Sh && active.has_specular_around()
-}
-
 /// The effective settings.
 fn used(
     quality: &Quality,
     sweep: Option<&Sweep>,
-    border: Border,
-    active: &ActiveLights<'_>,
+    (border, active, has_series): (Border, &ActiveLights<'_>, bool),
     images: &Images,
     soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {
@@ -359,24 +362,22 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    let is_around = active.environment.is_some() || harmonics_alone(active, quality);
-    match quality.basis {
-        Basis::Sh if is_around => {
-            add("basis", "sh");
-            add("sh_order", &quality.sh_order.to_string());
-            add("wedges", quality.wedges.name());
-            add("receiver", quality.receiver.name());
-            add("window", quality.window.name());
-            add("subsample", &quality.subsample.to_string());
-            if quality.wedges == Wedges::Table {
-                add("wedge_side", &quality.wedge_side.to_string());
-            }
+    let by_table = active.environment.is_some() && quality.basis != Basis::Sh;
+    if by_table || has_series {
+        add("basis", if quality.basis == Basis::Sh { "sh" } else { "table" });
+    }
+    if by_table {
+        add("table_elevations", &quality.table_elevations.to_string());
+    }
+    if has_series {
+        add("sh_order", &quality.sh_order.to_string());
+        add("wedges", quality.wedges.name());
+        add("receiver", quality.receiver.name());
+        add("window", quality.window.name());
+        add("subsample", &quality.subsample.to_string());
+        if quality.wedges == Wedges::Table {
+            add("wedge_side", &quality.wedge_side.to_string());
         }
-        _ if is_around => {
-            add("basis", "table");
-            add("table_elevations", &quality.table_elevations.to_string());
-        }
-        _ => {}
     }
     let has_spheres = !active.near.active.is_empty();
     if has_spheres || active.aimed().any(|light| light.shape != Shape::Point) {

@@ -124,7 +124,7 @@ words! {
 words! {
     /// Basis of an environment. A uniform sky is always in closed form.
     pub enum Basis = Auto {
-        /// The planner's choice: sh for a map of specular and for its bounces, else table
+        /// The planner's choice: sh for a map of specular, else table
         Auto = "auto",
         /// Tables of the light above each elevation, for each azimuth
         ///

@@ -358,7 +358,7 @@ pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
         return Ok(());
     }
     let found = if bounces > 0 { "specular with bounces" } else { "a map of specular" };
-    let expected = "one exponent and scale, without --bounces; other specular is only approximated, by SH of --sh-order";
+    let expected = "one exponent and scale, without --bounces; SH of --sh-order only approximate other specular";
     Err(Error::setting(format!("--specular with {what}"), found, expected))
 }
 

@@ -173,8 +173,9 @@ impl Drawing<'_> {
             }
             let field = (batch.axis, border, cell_m);
             let specular = self.phong().map(|phong| (phong, self.eye_m));
-            let lit =
-                [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, specular)];
+            // Of slices, the series are for bounces alone.
+            let specular_sum = self.images.specular_sum.filter(|_| self.slices.is_none());
+            let lit = [(&h.diffuse, env_sum, None), (&h.specular, specular_sum, specular)];
             for (light, sum, specular) in lit {
                 if let (Some(light), Some(sum)) = (light, sum) {
                     let ids = [lane_heights, h.visibility, light.light_matrix, sum];
@@ -188,7 +189,7 @@ impl Drawing<'_> {
                     );
                 }
             }
-            self.specular_is_begun = h.specular.is_some();
+            self.specular_is_begun = h.specular.is_some() && self.slices.is_none();
             self.specular_around();
         }
         if let Some((batch, lane_heights)) = batches.last().zip(last_lanes) {

@@ -247,24 +247,24 @@ impl HarmonicLight {
 }
 
 impl Harmonics {
-    /// For an environment, for specular, or for both.
+    /// For an environment on diffuse ground, for specular, or for both.
     pub(super) fn make(
         builder: &mut Builder,
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
-        (quality, has_specular): (&Quality, bool),
+        (quality, [has_diffuse, has_specular]): (&Quality, [bool; 2]),
         circle: &[Azimuth],
     ) -> Self {
-        let mut constants = Vec::new();
-        let diffuse =
-            environment.map(|_| Sh::of(environment, border, quality, false, &mut constants));
-        let specular =
-            has_specular.then(|| Sh::of(environment, border, quality, true, &mut constants));
+        // Offsets count from the first constant of all.
+        let (_, first) = builder.constants(&[]);
+        let mut constants = vec![0.0; 4 * first];
+        let mut of = |specular| Sh::of(environment, border, quality, specular, &mut constants);
+        let diffuse = has_diffuse.then(|| of(false));
+        let specular = has_specular.then(|| of(true));
         let sh = diffuse.or(specular).expect("an environment or specular");
         let by_table = quality.wedges == Wedges::Table;
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
-        // The first constants, as their offsets count from 0.
-        let (constants, _) = builder.constants(&constants);
+        let (constants, _) = builder.constants(&constants[4 * first..]);
         let diffuse =
             diffuse.map(|sh| HarmonicLight::make(builder, sh, ["env_rotation", "light_matrix"]));
         let specular = specular

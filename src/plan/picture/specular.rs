@@ -61,16 +61,12 @@ pub(super) fn quality(
             Ok(quality)
         }
         Basis::Auto => {
-            notes.push(
-                "basis sh: specular of a map or with bounces needs harmonics, which blur the lobe"
-                    .into(),
-            );
+            notes.push("basis sh: a map of specular needs harmonics, which blur the lobe".into());
             Ok(Quality { basis: Basis::Sh, ..quality })
         }
-        Basis::Table => refuse(
-            "a map of specular, or specular with bounces, with `basis table`",
-            "`basis sh`; one exponent and scale, and `bounces` 0",
-        ),
+        Basis::Table => {
+            refuse("a map of specular with `basis table`", "`basis sh`, or one exponent and scale")
+        }
     }
 }
 
@@ -299,8 +295,8 @@ mod tests {
     use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
-        Albedo, Basis, Border, Bounces, Environment, KeyLight, LightBasis, Lights, NearType,
-        PhongSpecular, Quality, SPHERE_LIGHT, Scene, Specular, SphereLight, Sun, Surface,
+        Albedo, Basis, Border, BounceSpecular, Bounces, Environment, KeyLight, LightBasis, Lights,
+        NearType, PhongSpecular, Quality, SPHERE_LIGHT, Scene, Specular, SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
@@ -375,6 +371,11 @@ mod tests {
             assert!(planned(lights.clone(), 0.5, base).is_ok(), "{said}");
             assert!(planned(lights, 0.0, quality).is_ok(), "{said}");
         }
+        let map = Specular::Map(vec![PhongSpecular { exponent: 9.0, scale: 0.5 }; 32 * 32]);
+        let by_table = Quality { basis: Basis::Table, ..base };
+        let (mapped, limits) = (scene(sky(), map), Limits::lavapipe());
+        let refused = plan::picture(&mapped, &by_table, &limits, Picture::default()).unwrap_err();
+        assert!(refused.to_string().contains("a map of specular with `basis table`"), "{refused}");
         assert!(planned(of_key([0.0; 3]), 0.5, bounced).is_ok());
         assert!(planned(of_sphere([0.0; 3]), 0.5, bounced).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
@@ -531,5 +532,24 @@ mod tests {
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
         assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
         assert!(none.find("specular_sum").is_none() && none.find("visibility").is_none());
+    }
+
+    /// With bounces, tables reflect direct light, too. Harmonics hold the light that vectors of exit radiance reflect; the
+    /// radiance towards the zenith needs none.
+    #[test]
+    fn bounces_keep_the_tables_of_direct_specular() {
+        for (specular, has_series) in [
+            (BounceSpecular::Vector, true),
+            (BounceSpecular::VectorF16, true),
+            (BounceSpecular::Scalar, false),
+        ] {
+            let bounces = Bounces { count: 1, specular, ..Bounces::default() };
+            let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+            let plan = planned(sky(), 0.5, quality).unwrap();
+            let all = names(&plan);
+            assert!(all.iter().any(|name| name == "specular_light"), "{all:?}");
+            assert!(!all.iter().any(|name| name.starts_with("sh_shade")), "{all:?}");
+            assert_eq!(plan.find("visibility").is_some(), has_series, "{specular:?}");
+        }
     }
 }

@@ -142,6 +142,28 @@ fn specular_reflects_no_more_than_arrives() {
     }
 }
 
+/// With bounces, each layer of direct light has the bits that it has without them.
+#[test]
+fn bounces_leave_direct_light_as_it_is() {
+    let mut gpu = Device::new();
+    let mut scene = lobed();
+    let phong = PhongSpecular { exponent: 20.0, scale: 0.4 };
+    scene.surface.specular = Some(Specular::Constant(phong));
+    scene.lights.sky = Some([0.5, 1.0, 1.5]);
+    for storage in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
+        let mut quality = Quality { basis: Basis::Auto, ..bounce_quality(2, storage, 4) };
+        let bounced = drawn(&mut gpu, &scene, &quality);
+        assert!(layer(&bounced, "indirect.specular").iter().any(|light| light[1] > 0.0));
+        quality.bounces.count = 0;
+        let direct = drawn(&mut gpu, &scene, &quality);
+        let layers: Vec<_> = direct.iter().filter(|l| l.0.starts_with("direct.")).collect();
+        assert_eq!(layers.len(), 3);
+        for (name, light) in layers {
+            assert!(layer(&bounced, name) == light, "{storage:?} {name}");
+        }
+    }
+}
+
 /// Without specular the plan is the diffuse one, pass for pass and byte for byte, and so is its light.
 #[test]
 fn specular_of_scale_zero_adds_nothing() {

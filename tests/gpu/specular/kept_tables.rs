@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use ridgelight::gpu::{Headless, Renderer};
 use ridgelight::plan::{self, Picture, Plan, Rectangle};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal,
+    Albedo, Basis, Border, Bounces, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal,
 };
 
 use crate::cpu_reference::noisy_environment;
@@ -41,7 +41,12 @@ fn scene(exponent: f32) -> Scene {
 }
 
 fn planned(gpu: &Headless, scene: &Scene) -> Plan {
-    let quality = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
+    planned_with(gpu, scene, 0)
+}
+
+fn planned_with(gpu: &Headless, scene: &Scene, count: u32) -> Plan {
+    let bounces = Bounces { count, ..Bounces::default() };
+    let quality = Quality { azimuths: 12, table_elevations: 32, bounces, ..Quality::default() };
     let wanted = Picture { keeps_horizons: true, light_layers: true, ..Picture::default() };
     plan::picture(scene, &quality, &crate::limits_of(gpu), wanted).expect("a plan")
 }
@@ -189,6 +194,31 @@ fn tables_follow_the_environment_and_the_exponent() {
     let narrow = planned(gpu, &scene);
     gpu.replace_plan(&mut frame, narrow).expect_err("larger tables");
     assert_eq!(left_out(&plan, &frame.renderer().passes_after(&[heights])), TABLES);
+    gpu.end(frame);
+}
+
+/// With bounces, tables reflect direct light, and harmonics light that bounces. Another environment changes both and needs no sweep.
+#[test]
+fn bounced_specular_follows_the_environment() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let scene = scene(5.0);
+    let plan = planned_with(gpu, &scene, 1);
+    let environment = plan.find("environment").expect("an input");
+    let mut contents = contents(&scene, 1);
+    let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let first = bits(gpu, &frame);
+    let mut other = scene.clone();
+    other.lights.environment = Some(noisy_environment(4));
+    contents[1] = plan::picture_inputs(&other).swap_remove(1);
+    gpu.refill(&frame, 1, &contents[1]).expect("refilled");
+    let passes = frame.renderer().passes_after(&[environment]);
+    let kept = left_out(&plan, &passes);
+    assert!(kept.iter().any(|label| label.starts_with("horizon_sweep")), "{kept:?}");
+    gpu.draw_passes(&mut frame, &passes).expect("drawn");
+    let lit = bits(gpu, &frame);
+    assert!(lit != first && lit == from_nothing(gpu, &plan, &contents));
     gpu.end(frame);
 }
 
