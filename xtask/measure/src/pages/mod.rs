@@ -451,6 +451,14 @@ fn bake() -> Result<String> {
     )
 }
 
+/// The table of `tools/mitsuba/compare`.
+fn mitsuba() -> Result<String> {
+    let (body, made) = result("mitsuba.txt")?;
+    let is_whole = body.starts_with("| field | light | default, error % |");
+    found("mitsuba.txt", is_whole.then_some(()), "the table of tools/mitsuba/compare")?;
+    Ok(format!("{}\n\n*{}*\n", body.trim_end(), made.trim_start_matches("; ")))
+}
+
 /// What `cargo measure curved` found: the bases that are not refused.
 fn curved() -> Result<String> {
     let (body, made) = result("curved.txt")?;
@@ -498,7 +506,13 @@ const PAGES: [(&str, &[Section]); 9] = [
     ("docs/methods.md", &[("forms", forms)]),
     (
         "docs/accuracy.md",
-        &[("accuracy", accuracy), ("defaults", defaults), ("suns", suns), ("bounces", bounces)],
+        &[
+            ("mitsuba", mitsuba),
+            ("accuracy", accuracy),
+            ("defaults", defaults),
+            ("suns", suns),
+            ("bounces", bounces),
+        ],
     ),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals), ("trade", trade)]),
     ("docs/measured/performance.md", &[("performance", performance::performance)]),
