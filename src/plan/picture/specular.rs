@@ -96,6 +96,12 @@ fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
         let found = quality.subsample.to_string();
         return refuse("subsample", &found, "1: arriving light is a series at every texel");
     }
+    if quality.bounces.specular != BounceSpecular::Scalar {
+        let order = quality.sh_order;
+        notes.push(format!(
+            "specular between bounces: harmonics of order {order}, which blur the lobe"
+        ));
+    }
     Ok(quality)
 }
 
@@ -550,6 +556,8 @@ mod tests {
             assert!(all.iter().any(|name| name == "specular_light"), "{all:?}");
             assert!(!all.iter().any(|name| name.starts_with("sh_shade")), "{all:?}");
             assert_eq!(plan.find("visibility").is_some(), has_series, "{specular:?}");
+            let is_noted = plan.notes.iter().any(|n| n.starts_with("specular between bounces"));
+            assert_eq!(is_noted, has_series, "{:?}", plan.notes);
         }
     }
 }
