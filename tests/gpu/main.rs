@@ -96,6 +96,7 @@ mod specular {
     mod kept_tables;
     mod keys;
     mod spheres;
+    mod spots;
     mod viewed_paths;
 }
 #[path = "../common/intercepted.rs"]
