@@ -1,9 +1,10 @@
 // Computes: indirect light at every grid point, exact except for the azimuth count: along each azimuth the visible
 // intervals of the surface, each with its cosine-weighted part of the slice in closed form and its radiance at the
-// weighted mean distance.
-// Reads: cells, maxima, ground, exit_radiance.
+// weighted mean distance. With specular also the same light as a series of spherical harmonics, and exit radiance by
+// direction.
+// Reads: cells, maxima, ground, exit_radiance or exit_vectors.
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
-// last azimuths).
+// last azimuths), arriving (four coefficients per layer, channel after channel).
 // One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 
@@ -22,12 +23,18 @@ layout(constant_id = 3) const int MOST_STEPS = 60000;
 layout(constant_id = 4) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 5) const int NODE_STRIDE = 1;
+// Order of the series of arriving light; 0 for none.
+layout(constant_id = 6) const int ORDER = 0;
+// Exit radiance by direction, as series of that order.
+layout(constant_id = 7) const bool VECTORS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D cells;
 layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3) uniform texture2D exit_radiance;
 layout(binding = 4, rgba32f) uniform image2D bounce_sum;
+layout(binding = 5) uniform texture2DArray exit_vectors;
+layout(binding = 6, rgba32f) uniform image2DArray arriving;
 
 #include "rays/land.glsl"
 
@@ -42,7 +49,30 @@ layout(push_constant) uniform BounceMarchPush {
 #include "rays/walk.glsl"
 #include "shared/nodes.glsl"
 
+const int FOURS = (ORDER * ORDER + 3) / 4;
+vec4 harmonics[36];
+#include "shared/harmonics.glsl"
+// Visibility above an elevation, in this azimuth; 0 between uses.
+#define VALUE float
+float series[36];
+float turn[11];
+#include "sh/visible.glsl"
+#include "sh/turn.glsl"
+
+// Calls a function for each layer of four coefficients. Not a loop: llvmpipe counts the turns of all loops.
+#define EACH_FOUR(f) \
+    if (FOURS > 0) { f(0); } \
+    if (FOURS > 1) { f(1); } \
+    if (FOURS > 2) { f(2); } \
+    if (FOURS > 3) { f(3); } \
+    if (FOURS > 4) { f(4); } \
+    if (FOURS > 5) { f(5); } \
+    if (FOURS > 6) { f(6); } \
+    if (FOURS > 7) { f(7); } \
+    if (FOURS > 8) { f(8); }
+
 // The slice.
+vec2 azimuth;
 Facing facing;
 // So far: the slope up to which the surface is visible, its indirect light, and the radiance of the last visible
 // interval.
@@ -50,13 +80,100 @@ float reached;
 vec3 indirect;
 vec3 last_radiance;
 
+// Arriving light so far.
+vec4 arrived_red[9];
+vec4 arrived_green[9];
+vec4 arrived_blue[9];
+ivec2 own_texel;
+
+void load_arrived(int i) {
+    arrived_red[i] = imageLoad(arriving, ivec3(own_texel, i));
+    if (!GREY) {
+        arrived_green[i] = imageLoad(arriving, ivec3(own_texel, FOURS + i));
+        arrived_blue[i] = imageLoad(arriving, ivec3(own_texel, 2 * FOURS + i));
+    }
+}
+
+void clear_arrived(int i) {
+    arrived_red[i] = vec4(0.0);
+    arrived_green[i] = vec4(0.0);
+    arrived_blue[i] = vec4(0.0);
+}
+
+void store_arrived(int i) {
+    imageStore(arriving, ivec3(own_texel, i), arrived_red[i]);
+    if (!GREY) {
+        imageStore(arriving, ivec3(own_texel, FOURS + i), arrived_green[i]);
+        imageStore(arriving, ivec3(own_texel, 2 * FOURS + i), arrived_blue[i]);
+    }
+}
+
+// Change of incident radiance.
+vec3 change;
+
+void add_change(int i) {
+    vec4 four = vec4(series[4 * i], series[4 * i + 1], series[4 * i + 2], series[4 * i + 3]);
+    arrived_red[i] += change.r * four;
+    arrived_green[i] += change.g * four;
+    arrived_blue[i] += change.b * four;
+    series[4 * i] = 0.0;
+    series[4 * i + 1] = 0.0;
+    series[4 * i + 2] = 0.0;
+    series[4 * i + 3] = 0.0;
+}
+
+// Changes incident radiance for all elevations above `reached`.
+void add_arriving(vec3 more) {
+    vec2 direction = direction_of(reached);
+    add_slices(HALF_PI - arc_tangent(vec4(reached)).x, direction.y, direction.x);
+    change = more;
+    EACH_FOUR(add_change)
+}
+
+// Radiance of a cell's corners: north-west, north-east, south-west, south-east.
+vec3 corners_of[4];
+ivec2 corner_texels[4];
+
 vec3 radiance_at(ivec2 at) {
     vec4 texel = texelFetch(exit_radiance, at, 0);
     return GREY ? texel.xxx : texel.rgb;
 }
 
-// Radiance of a cell's corners: north-west, north-east, south-west, south-east.
-vec3 corners_of[4];
+vec3 part_towards(ivec2 at, int i, vec4 y) {
+    float red = dot(y, texelFetch(exit_vectors, ivec3(at, i), 0));
+    vec3 light = vec3(red);
+    if (!GREY) {
+        light.g = dot(y, texelFetch(exit_vectors, ivec3(at, FOURS + i), 0));
+        light.b = dot(y, texelFetch(exit_vectors, ivec3(at, 2 * FOURS + i), 0));
+    }
+    return light;
+}
+
+void add_towards(int i) {
+    vec4 y = vec4(harmonics[4 * i].x, harmonics[4 * i + 1].x, harmonics[4 * i + 2].x, harmonics[4 * i + 3].x);
+    corners_of[0] += part_towards(corner_texels[0], i, y);
+    corners_of[1] += part_towards(corner_texels[1], i, y);
+    corners_of[2] += part_towards(corner_texels[2], i, y);
+    corners_of[3] += part_towards(corner_texels[3], i, y);
+}
+
+// Towards the grid point, from a direction of its slice.
+void find_corners(vec2 direction) {
+    if (VECTORS) {
+        vec3 e = vec3(azimuth * direction.x, direction.y);
+        find_harmonics(vec4(-e.x), vec4(-e.y), vec4(-e.z));
+        corners_of[0] = vec3(0.0);
+        corners_of[1] = vec3(0.0);
+        corners_of[2] = vec3(0.0);
+        corners_of[3] = vec3(0.0);
+        EACH_FOUR(add_towards)
+    } else {
+        corners_of[0] = radiance_at(corner_texels[0]);
+        corners_of[1] = radiance_at(corner_texels[1]);
+        corners_of[2] = radiance_at(corner_texels[2]);
+        corners_of[3] = radiance_at(corner_texels[3]);
+    }
+}
 
 // Linear on each of the cell's triangles.
 vec3 radiance_within(vec2 at) {
@@ -74,9 +191,9 @@ float share_at(vec2 begin, vec2 end, vec2 direction) {
 
 // Adds a piece: the part from `reached` up to its end, if that is higher. `place` and `advance` give its start in the
 // cell and its direction through it.
-void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance) {
+void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance, bool on) {
     float slope = end.y / max(end.x, 1e-30);
-    bool rises = end.x > begin.x && slope > reached;
+    bool rises = on && end.x > begin.x && slope > reached;
     vec2 low = direction_of(reached);
     vec2 high = direction_of(max(slope, reached));
     float weight = max(light_between(facing, low, high), 0.0);
@@ -90,10 +207,16 @@ void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     float weight_after = max(facing_of(facing, after), 0.0) * after.x;
     float both = max(weight_before + weight_after, 1e-30);
     float share = (weight_before * share_at(begin, end, before) + weight_after * share_at(begin, end, after)) / both;
-    // Clamped against rounding.
+    if (VECTORS) {
+        find_corners(middle);
+    }
+    // Clamped against rounding; series ring.
     vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
     float counts = rises ? weight : 0.0;
     indirect += counts * radiance;
+    if (ORDER > 0) {
+        add_arriving(rises ? radiance - last_radiance : vec3(0.0));
+    }
     last_radiance = rises ? radiance : last_radiance;
     reached = rises ? slope : reached;
 }
@@ -143,18 +266,15 @@ void march(Ray ray, bool going) {
             ivec2 size = ivec2(land.cols, land.rows);
             ivec2 next = fetched + 1;
             next *= ivec2(lessThan(next, size));
-            corners_of[0] = radiance_at(fetched);
-            corners_of[1] = radiance_at(ivec2(next.x, fetched.y));
-            corners_of[2] = radiance_at(ivec2(fetched.x, next.y));
-            corners_of[3] = radiance_at(next);
-            float reached_before = reached;
-            vec3 indirect_before = indirect;
-            vec3 last_before = last_radiance;
-            add_piece(entry, middle, at_entry, at_middle - at_entry);
-            add_piece(middle, exit, at_middle, at_exit - at_middle);
-            reached = opens ? reached : reached_before;
-            indirect = opens ? indirect : indirect_before;
-            last_radiance = opens ? last_radiance : last_before;
+            corner_texels[0] = fetched;
+            corner_texels[1] = ivec2(next.x, fetched.y);
+            corner_texels[2] = ivec2(fetched.x, next.y);
+            corner_texels[3] = next;
+            if (!VECTORS) {
+                find_corners(vec2(1.0, 0.0));
+            }
+            add_piece(entry, middle, at_entry, at_middle - at_entry, opens);
+            add_piece(middle, exit, at_middle, at_exit - at_middle, opens);
         }
         walk_on(walk, ray, block, going, clear, land.top_level);
         bool is_over = reached >= 0.0 && walk.t > 0.0 && walk.t * reached * step_m >= highest;
@@ -172,6 +292,17 @@ void main() {
     bool is_line = THIN_ROWS || THIN_COLS;
     vec4 before = imageLoad(bounce_sum, min(at, nodes - 1));
     vec4 sum = mix(vec4(0.0), before, bvec4(first_azimuth > 0));
+    own_texel = min(at, nodes - 1);
+    for (int i = 0; i < 36; i++) {
+        // Zero past the last coefficient.
+        harmonics[i] = vec4(0.0);
+        series[i] = 0.0;
+    }
+    if (first_azimuth > 0) {
+        EACH_FOUR(load_arrived)
+    } else {
+        EACH_FOUR(clear_arrived)
+    }
     for (int k = first_azimuth; k < last_azimuth; k++) {
         // Half a turn counted from west, in halves: the sines' range.
         float half_turn = PI * ((float(k) + 0.5) / float(azimuths) - 0.5);
@@ -183,6 +314,8 @@ void main() {
         e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
         // Rise of the grid point's own tangent plane along the azimuth.
         float own_slope = own.y * e.x + own.z * e.y;
+        azimuth = e;
+        turn_to(2.0 * PI / float(azimuths), e);
         facing = Facing(-own_slope * up, up);
         reached = own_slope;
         indirect = vec3(0.0);
@@ -192,6 +325,10 @@ void main() {
             // A ray without a hit up to horizontal continues over the same terrain forever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);
             indirect += rest * last_radiance;
+            reached = max(reached, 0.0);
+        }
+        if (ORDER > 0) {
+            add_arriving(-last_radiance);
         }
         sum += vec4(indirect, light_between(facing, direction_of(own_slope), vec2(0.0, 1.0)));
     }
@@ -200,5 +337,6 @@ void main() {
         vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), 1.0);
         bool is_whole = last_azimuth == azimuths;
         imageStore(bounce_sum, at, is_whole ? light : sum);
+        EACH_FOUR(store_arrived)
     }
 }

@@ -1,15 +1,16 @@
 use crate::graph::{Builder, MOST_TURNS, Part, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::NodeSum;
+use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::bounces::Bounce;
 use crate::scene::Scene;
 
-/// Gathers bounced light at every grid point, or at every node, by brute force.
+/// Gathers bounced light at every grid point, or at every node, by brute force; with specular also as a series.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
-    azimuths: u32,
+    (azimuths, specular): (u32, Option<&BouncedSpecular>),
     bounce: &Bounce,
 ) {
     let field = &scene.field;
@@ -18,7 +19,24 @@ pub(crate) fn plan(
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [cells, maxima] = blocks.of_rays();
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
-    let each = blocks.levels.lookups();
+    let vectors = match specular.map(|specular| specular.outgoing) {
+        Some(ExitLight::Vectors(Vectors { exit, .. })) => Some(exit),
+        _ => None,
+    };
+    let layers = specular.map_or(0, |specular| u64::from(specular.layers()));
+    // Four texels of every layer where surface is visible: at most steps it is not.
+    let each = blocks.levels.lookups() * if vectors.is_some() { 1 + layers } else { 1 };
+    let mut bound = vec![
+        ("cells", cells),
+        ("maxima", maxima),
+        ("ground", blocks.ground),
+        ("bounce_sum", sum),
+        match vectors {
+            Some(vectors) => ("exit_vectors", vectors),
+            None => ("exit_radiance", bounce.exit),
+        },
+    ];
+    bound.extend(specular.map(|specular| ("arriving", specular.arriving)));
     for part in builder.parts(0..azimuths, [across, along], each, at_once) {
         let Part { azimuths: few, rows } = &part;
         let (count, height) = (few.len() as u32, rows.len() as u32);
@@ -31,6 +49,8 @@ pub(crate) fn plan(
                 most_steps: blocks.levels.most_steps() as i32,
                 grey: bounce.grey,
                 node_stride: nodes.stride as i32,
+                order: specular.map_or(0, |specular| specular.order as i32),
+                vectors: vectors.is_some(),
             },
             &part.label(&bounce.name, "azimuths", &(0..azimuths), along),
             format!("{}, every visible interval along {count} azimuths", bounce.why),
@@ -42,14 +62,8 @@ pub(crate) fn plan(
                 last_azimuth: few.end as i32,
                 first_row: rows.start as i32,
             },
-            &[
-                ("cells", cells),
-                ("maxima", maxima),
-                ("ground", blocks.ground),
-                ("exit_radiance", bounce.exit),
-                ("bounce_sum", sum),
-            ],
-            grid_points * (3 * 16 + if bounce.grey { 4 } else { 16 }),
+            &bound,
+            grid_points * (3 * 16 + 2 * 16 * layers + if bounce.grey { 4 } else { 16 }),
             grid_points * u64::from(count),
         );
     }

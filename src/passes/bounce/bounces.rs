@@ -124,7 +124,9 @@ impl Bouncing {
         let size = [extent[0], extent[1]];
         let shade = shade(quality, size, scene);
         let specular = specular_notes.map(|notes| {
-            BouncedSpecular::make(builder, (size, &shade), quality, (grey, layers), notes)
+            // Brute force needs no levels.
+            let shade = (bounces.engine == BounceEngine::Pyramid).then_some(&shade);
+            BouncedSpecular::make(builder, (size, shade), quality, (grey, layers), notes)
         });
         let engine = match bounces.engine {
             BounceEngine::BruteForce => Engine::Brute,
@@ -183,7 +185,10 @@ impl Bouncing {
         let size = [scene.field.cols() as u32, scene.field.rows() as u32];
         let blocks = || blocks.expect("made for engines that read the ground");
         match &self.engine {
-            Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
+            Engine::Brute => {
+                let how = (self.azimuths, self.specular.as_ref());
+                bounce_march::plan(builder, scene, blocks(), how, &bounce);
+            }
             Engine::Sweep(ground, line_blocks) => {
                 let over = swept.expect("swept for walks");
                 let WalkedOver { sweeping, batches } = over;
@@ -242,14 +247,14 @@ impl Bouncing {
         add("bounce_azimuths", self.azimuths.to_string());
         let first = self.at_nodes.and_then(|at| at.first);
         add("subsample", first.map_or(1, |first| first.nodes.stride).to_string());
+        if let Some(specular) = &self.specular {
+            add("bounce_specular", specular.mode().name().to_owned());
+            add("sh_order", specular.order.to_string());
+        }
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::BruteForce,
             Engine::Sweep(..) => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
-                if let Some(specular) = &self.specular {
-                    add("bounce_specular", specular.mode().name().to_owned());
-                    add("sh_order", specular.order.to_string());
-                }
                 add("bounce_level_step", of.shade.level_step.to_string());
                 add("bounce_level_offset", of.shade.level_offset.to_string());
                 add("level_step", of.heights.level_step.to_string());

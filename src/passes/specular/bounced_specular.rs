@@ -51,10 +51,10 @@ pub(crate) struct Vectors {
 }
 
 impl BouncedSpecular {
-    /// Images for a field of `size`; `shade` are the levels of exit radiance.
+    /// Images for a field of `size`; `shade` are the levels of exit radiance, where the engine reads levels.
     pub(crate) fn make(
         builder: &mut Builder,
-        (size, shade): ([u32; 2], &Pyramid),
+        (size, shade): ([u32; 2], Option<&Pyramid>),
         quality: &Quality,
         (grey, layers): (bool, bool),
         notes: &mut Vec<String>,
@@ -79,7 +79,7 @@ impl BouncedSpecular {
             notes.push(memory_note(size, shade, (order, count), halves));
             let format = if halves { Format::Rgba16Float } else { Format::Rgba32Float };
             let exit = image("exit_vectors", Owner::Internal, format, [cols, rows, count], true);
-            let levels = (shade.levels() > 0).then(|| {
+            let levels = shade.filter(|shade| shade.levels() > 0).map(|shade| {
                 let width = 1 << shade.width_shift();
                 let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
                 let extent = [width, height, count];
@@ -129,11 +129,11 @@ fn layers_of(order: u32, grey: bool) -> u32 {
 /// Memory of the pyramid of series, as stored and in the other precision.
 fn memory_note(
     [cols, rows]: [u32; 2],
-    shade: &Pyramid,
+    shade: Option<&Pyramid>,
     (order, layers): (u32, u32),
     halves: bool,
 ) -> String {
-    let texels = u64::from(cols) * u64::from(rows) + shade.all_texels();
+    let texels = u64::from(cols) * u64::from(rows) + shade.map_or(0, Pyramid::all_texels);
     let [f32s, f16s] =
         [16, 8].map(|bytes| crate::graph::bytes_text(texels * u64::from(layers) * bytes));
     let [here, there] =

@@ -82,12 +82,12 @@ fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
         Err(Error::setting(format!("`{name}` with `bounces` and specular"), found, expected))
     };
     if quality.bounces.engine == BounceEngine::Auto {
-        notes.push("bounce engine pyramid: specular needs exit radiance by direction".into());
+        notes.push("bounce engine pyramid: specular needs exit radiance by direction; brute-force errs less, and takes longer".into());
         quality.bounces.engine = BounceEngine::Pyramid;
     }
-    if quality.bounces.engine != BounceEngine::Pyramid {
-        let found = quality.bounces.engine.name();
-        return refuse("bounce_engine", found, "pyramid, which keeps exit radiance by direction");
+    if quality.bounces.engine == BounceEngine::Sweep {
+        let expected = "pyramid or brute-force, which keep exit radiance by direction";
+        return refuse("bounce_engine", quality.bounces.engine.name(), expected);
     }
     if quality.receiver != Receiver::Plane {
         return refuse("receiver", quality.receiver.name(), "plane");

@@ -5,13 +5,13 @@ use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, Lights, Method,
-    PhongSpecular, Quality, Scene, Specular,
+    Normals, PhongSpecular, Quality, Scene, Specular,
 };
 use ridgelight_cpu::light::normal;
 use std::f64::consts::PI;
 
 use crate::brute_force_paths::Paths;
-use crate::reference::quadrature::traced;
+use crate::reference::quadrature::{traced, traced_on};
 use crate::{Device, colours, field, random, under_sky};
 
 /// A number of bounces by pyramids whose texels all use the field itself.
@@ -241,7 +241,7 @@ fn missing_cosine(order: usize) -> f64 {
 
 /// Hills of specular scale four fifths, whose feet see their sides, under a sky. Bounces by direction have a smaller
 /// error than bounces by one number a texel, and either a smaller one than none, by more than the Monte Carlo noise of
-/// the path-traced reference. Higher orders have smaller errors.
+/// the path-traced reference. Higher orders have smaller errors, and brute force a smaller one than pyramids.
 #[test]
 fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     const SIDE: usize = 17;
@@ -252,8 +252,8 @@ fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     let mut scene = under_sky(hills, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.2; 3]);
     scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.8 }));
-    let [first, first_error] = traced(&mut gpu, &scene, 0, 1, BATCHES);
-    let [all, error] = traced(&mut gpu, &scene, 2, 1, BATCHES);
+    let [first, first_error] = traced_on(&mut gpu, &scene, Normals::Smooth, (0, 1), BATCHES);
+    let [all, error] = traced_on(&mut gpu, &scene, Normals::Smooth, (2, 1), BATCHES);
     let count = (SIDE * SIDE) as f64;
     let mean = |values: &[[f64; 3]]| values.iter().map(|v| v[0]).sum::<f64>() / count;
     let bounced = mean(&all) - mean(&first);
@@ -273,10 +273,14 @@ fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
         |specular, order| Quality { method: Method::Auto, ..bounce_quality(2, specular, order) };
     let [coarse, vector] = [2, 4].map(|order| off(&bounce_quality(BounceSpecular::Vector, order)));
     let scalar = off(&bounce_quality(BounceSpecular::Scalar, 4));
+    let mut exact = bounce_quality(BounceSpecular::Vector, 6);
+    exact.bounces.engine = BounceEngine::BruteForce;
+    let exact = off(&exact);
     let spread = (noise / count).sqrt() / bounced;
     println!(
-        "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; Monte Carlo noise {spread:.3}"
+        "bounced {bounced:.4}: brute force {exact:.3}, vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; Monte Carlo noise {spread:.3}"
     );
+    assert!(exact + spread < vector, "{exact} {vector}");
     assert!(vector + spread < coarse.min(scalar), "{vector} {coarse} {scalar}");
     assert!(scalar + spread < 1.0, "{scalar}");
 }

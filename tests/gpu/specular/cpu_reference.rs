@@ -28,6 +28,32 @@ pub(crate) const REFERENCES: &[Reference] = &[
 
 /// Bounced Phong specular: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
 pub(crate) fn cases() -> Vec<Case> {
+    let mut all = of_engine(
+        BounceEngine::Pyramid,
+        [
+            "by direction",
+            "by direction, f16, periodic",
+            "by direction, with an eye",
+            "by direction, f16, grey, with an eye",
+            "as visible from above",
+            "as visible from above, grey",
+        ],
+    );
+    all.extend(of_engine(
+        BounceEngine::BruteForce,
+        [
+            "by direction, brute force",
+            "by direction, f16, periodic, brute force",
+            "by direction, with an eye, brute force",
+            "by direction, f16, grey, with an eye, brute force",
+            "as visible from above, brute force",
+            "as visible from above, grey, brute force",
+        ],
+    ));
+    all
+}
+
+fn of_engine(engine: BounceEngine, names: [&'static str; 6]) -> Vec<Case> {
     let case = |name, field: HeightField, border, specular, sh_order, levels, lights| {
         let texels = field.heights_m().len();
         let is_map = specular == BounceSpecular::Vector;
@@ -48,7 +74,7 @@ pub(crate) fn cases() -> Vec<Case> {
         let all = Bounces { cutoff: 0.0, ..Bounces::default() };
         let bounces = Bounces {
             count: 2,
-            engine: BounceEngine::Pyramid,
+            engine,
             // None along the field's edge, where rounding decides.
             azimuths: 8,
             level_step: 2,
@@ -90,27 +116,11 @@ pub(crate) fn cases() -> Vec<Case> {
     use BounceSpecular::{Scalar, Vector, VectorF16};
     let (stack, levels) = (Levels::Stack, Levels::Pyramid);
     vec![
-        case("by direction", rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),
-        case(
-            "by direction, f16, periodic",
-            rough(8, 10, 53),
-            Border::Periodic,
-            VectorF16,
-            4,
-            levels,
-            sky(),
-        ),
+        case(names[0], rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),
+        case(names[1], rough(8, 10, 53), Border::Periodic, VectorF16, 4, levels, sky()),
+        with_an_eye(case(names[2], rough(9, 11, 56), Border::Open, Vector, 4, levels, all.clone())),
         with_an_eye(case(
-            "by direction, with an eye",
-            rough(9, 11, 56),
-            Border::Open,
-            Vector,
-            4,
-            levels,
-            all.clone(),
-        )),
-        with_an_eye(case(
-            "by direction, f16, grey, with an eye",
+            names[3],
             rough(8, 9, 57),
             Border::Plane,
             VectorF16,
@@ -118,16 +128,8 @@ pub(crate) fn cases() -> Vec<Case> {
             stack,
             alone.clone(),
         )),
-        case("as visible from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
-        case(
-            "as visible from above, grey",
-            rough(7, 9, 55),
-            Border::Plane,
-            Scalar,
-            3,
-            stack,
-            alone,
-        ),
+        case(names[4], rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
+        case(names[5], rough(7, 9, 55), Border::Plane, Scalar, 3, stack, alone),
     ]
 }
 

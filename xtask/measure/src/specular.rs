@@ -3,9 +3,9 @@
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
-//! (1024) paths per grid point are the reference; the RMSE contains their noise. The stated noise is
+//! (8192) paths per grid point are the reference; the RMSE contains their noise. The stated noise is
 //! an upper bound, because paths with and without bounces begin alike. The picture: indirect light of
-//! specular alone, a row for each exponent: path-traced, vector of order 4, scalar, vector of order 6.
+//! specular alone, a row for each exponent: path-traced, by pyramids of order 4 and by brute force of order 6, scalar.
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
@@ -24,14 +24,16 @@ use crate::common::{Outcome, head, inputs, median, plot};
 
 const EXPONENTS: [f32; 4] = [1.0, 5.0, 20.0, 80.0];
 const BOUNCES: u32 = 2;
-/// What is kept, and the order; the first three are in the picture.
-const FORMS: [(BounceSpecular, u32); 6] = [
-    (BounceSpecular::Vector, 4),
-    (BounceSpecular::Scalar, 4),
-    (BounceSpecular::Vector, 6),
-    (BounceSpecular::VectorF16, 4),
-    (BounceSpecular::Vector, 2),
-    (BounceSpecular::Scalar, 6),
+/// The engine, what is kept, and the order; the first three are in the picture.
+const FORMS: [(BounceEngine, BounceSpecular, u32); 8] = [
+    (BounceEngine::Pyramid, BounceSpecular::Vector, 4),
+    (BounceEngine::BruteForce, BounceSpecular::Vector, 6),
+    (BounceEngine::Pyramid, BounceSpecular::Scalar, 4),
+    (BounceEngine::BruteForce, BounceSpecular::Vector, 4),
+    (BounceEngine::Pyramid, BounceSpecular::Vector, 6),
+    (BounceEngine::Pyramid, BounceSpecular::VectorF16, 4),
+    (BounceEngine::Pyramid, BounceSpecular::Vector, 2),
+    (BounceEngine::Pyramid, BounceSpecular::Scalar, 6),
 ];
 const IN_PICTURE: usize = 3;
 const DIRECT_BATCHES: u32 = 48;
@@ -166,7 +168,7 @@ fn suns(gpu: &mut Headless, ground: &(HeightField, Environment)) -> Outcome {
 }
 
 pub fn indirect(mut args: Args) -> Outcome {
-    let (output, paths) = (args.path("-o")?, args.number("--spp", 1024_u32)?);
+    let (output, paths) = (args.path("-o")?, args.number("--spp", 8192_u32)?);
     let ground = ground(&mut args, 3.0)?;
     let mut gpu = args.open()?;
     println!(
@@ -176,7 +178,7 @@ pub fn indirect(mut args: Args) -> Outcome {
         device(&gpu)
     );
     head(
-        "| diffuse | specular | exponent | kept | order | bounced % | noise % | whole % | ms | kept MB |",
+        "| diffuse | specular | exponent | engine | kept | order | bounced % | noise % | whole % | ms | kept MB |",
     );
     let batches = paths.div_ceil(REFERENCE_BATCH).max(2);
     let kept = ["exit_vectors", "vector_levels", "exit_upward", "shade_levels", "shade_stack"];
@@ -190,15 +192,14 @@ pub fn indirect(mut args: Args) -> Outcome {
             let noise = rms_of(&deviation).hypot(rms_of(&direct_deviation));
             let noise = 100.0 * noise / mean(&reference);
             let mut row = vec![reference.clone()];
-            for (specular, sh_order) in FORMS {
-                let (count, engine) = (BOUNCES, BounceEngine::Pyramid);
+            for (engine, specular, sh_order) in FORMS {
+                let count = BOUNCES;
                 let bounces =
                     Bounces { count, engine, cutoff: 0.0, specular, ..Bounces::default() };
-                let quality = Quality { basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
+                let quality = Quality { sh_order, bounces, ..Quality::default() };
                 let found = drawn_in_layers(&mut gpu, &scene, &quality)?;
                 println!(
-                    "| {albedo} | {scale} | {exponent} | {} | {sh_order} | {:.1} | {noise:.1} | {:.2} | {:.1} | {:.2} |",
-                    specular,
+                    "| {albedo} | {scale} | {exponent} | {engine} | {specular} | {sh_order} | {:.1} | {noise:.1} | {:.2} | {:.1} | {:.2} |",
                     error(&found.indirect, &reference)?,
                     error(&found.light, &all)?,
                     found.ms(),

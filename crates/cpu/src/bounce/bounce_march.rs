@@ -5,6 +5,9 @@ use crate::indirect::mean_distance_m;
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, radiance};
+use crate::specular_gather::Series;
+use glam::DVec3;
+use ridgelight::basis::harmonics::evaluate;
 use ridgelight::scene::Border;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -19,10 +22,33 @@ pub fn visible_intervals_along(
     oracle: &Oracle,
     exit: &[Rgb],
     azimuths: u32,
+    place: [usize; 2],
+) -> Vec<Along> {
+    assert_eq!(exit.len(), oracle.field().rows() * oracle.field().cols());
+    intervals_of(oracle, azimuths, place, |at, _| exit[at])
+}
+
+/// The same of exit radiance by direction, as series of `order`.
+pub fn visible_series_along(
+    oracle: &Oracle,
+    (order, exit): (usize, &[Series]),
+    azimuths: u32,
+    place: [usize; 2],
+) -> Vec<Along> {
+    intervals_of(oracle, azimuths, place, |at, towards| {
+        let terms = exit[at].iter().zip(evaluate(order, towards));
+        terms.fold([0.0; 3], |sum, (s, y)| [0, 1, 2].map(|c| sum[c] + s[c] * y))
+    })
+}
+
+/// Of the radiance that `leaving` a grid point goes in a direction: for each interval that to its middle.
+fn intervals_of(
+    oracle: &Oracle,
+    azimuths: u32,
     [row, col]: [usize; 2],
+    leaving: impl Fn(usize, DVec3) -> Rgb,
 ) -> Vec<Along> {
     let field = oracle.field();
-    assert_eq!(exit.len(), field.rows() * field.cols());
     let receiver = Receiver::diffuse(normal(field, oracle.border(), row, col));
     let along = |k: u32| {
         let azimuth_rad = TAU * (f64::from(k) + 0.5) / f64::from(azimuths);
@@ -31,18 +57,24 @@ pub fn visible_intervals_along(
         let intervals = oracle.nearly_visible([row, col], azimuth_rad, NEARLY_RAD);
         let casts = intervals.iter().filter(|interval| interval.high_rad > slice.low - NEARLY_RAD);
         let cast = |interval: &crate::profile::VisibleInterval| {
-            let from = oracle.corners(interval.triangle).map(|[r, c]| exit[r * field.cols() + c]);
+            let [low_rad, high_rad] =
+                [interval.low_rad, interval.high_rad].map(|w| w.max(slice.low));
+            let (up, flat) = (0.5 * (low_rad + high_rad)).sin_cos();
+            let (sin, cos) = azimuth_rad.sin_cos();
+            let towards = -DVec3::new(flat * cos, flat * sin, up);
+            let corners = oracle.corners(interval.triangle);
+            let from = corners.map(|[r, c]| leaving(r * field.cols() + c, towards));
             let shares = interval.corner_weights(mean_distance_m(&slice, interval));
             let [rise_m, steepest] = land_around(oracle, interval.triangle, [row, col]);
             let of = |c: usize| from.map(|corner| corner[c]);
-            let [low_rad, high_rad] =
-                [interval.low_rad, interval.high_rad].map(|w| w.max(slice.low));
+            let mean = |c: usize| of(c).iter().zip(shares).map(|(l, s)| l * s).sum::<f64>();
             Cast {
                 low_rad,
                 high_rad,
                 weight: slice.light(interval.low_rad, interval.high_rad).max(0.0),
                 facing: slice.at(high_rad) * high_rad.cos(),
-                radiance: [0, 1, 2].map(|c| of(c).iter().zip(shares).map(|(l, s)| l * s).sum()),
+                // Series ring.
+                radiance: [0, 1, 2].map(|c| mean(c).max(0.0)),
                 spread: [0, 1, 2].map(|c| {
                     of(c).iter().fold(f64::MIN, |m, l| m.max(*l))
                         - of(c).iter().fold(f64::MAX, |m, l| m.min(*l))

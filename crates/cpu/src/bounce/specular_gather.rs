@@ -35,35 +35,34 @@ pub struct Arriving {
     pub series: Series,
 }
 
+/// Incident light of `order` from the parts of all azimuths, which are equally wide.
+pub fn arriving(order: usize, all: &[Along]) -> Arriving {
+    let slices = Slices::new(order);
+    let width = TAU / all.len() as f64;
+    let mut series = vec![[0.0; 3]; order * order];
+    for along in all {
+        let turns = around(order, along.azimuth_rad);
+        for cast in &along.casts {
+            let between = slices.between(cast.low_rad, cast.high_rad);
+            for ((l, m), coefficient) in bands(order).zip(&mut series) {
+                let turn = turns[(order - 1).wrapping_add_signed(m)];
+                let share = width * turn * between[slice_index(l, m.unsigned_abs())];
+                *coefficient = [0, 1, 2].map(|c| coefficient[c] + share * cast.radiance[c]);
+            }
+        }
+    }
+    Arriving { diffuse: radiance(all), series }
+}
+
 impl SpecularGather<'_> {
     /// Incident light at a grid point.
     pub fn arriving(&self, place: [usize; 2]) -> Arriving {
-        self.of(&self.casts_along(place))
+        arriving(self.order, &self.casts_along(place))
     }
 
     /// Its parts, azimuth by azimuth, as [`BounceGather::casts_along`].
     pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
         self.gather.casts_of(place, |march, e, of| self.radiance(march, -e, of))
-    }
-
-    /// From the parts of all azimuths.
-    pub fn of(&self, all: &[Along]) -> Arriving {
-        let Self { gather, order, .. } = self;
-        let slices = Slices::new(*order);
-        let width = TAU / f64::from(gather.azimuths);
-        let mut series = vec![[0.0; 3]; order * order];
-        for along in all {
-            let turns = around(*order, along.azimuth_rad);
-            for cast in &along.casts {
-                let between = slices.between(cast.low_rad, cast.high_rad);
-                for ((l, m), coefficient) in bands(*order).zip(&mut series) {
-                    let turn = turns[(order - 1).wrapping_add_signed(m)];
-                    let share = width * turn * between[slice_index(l, m.unsigned_abs())];
-                    *coefficient = [0, 1, 2].map(|c| coefficient[c] + share * cast.radiance[c]);
-                }
-            }
-        }
-        Arriving { diffuse: radiance(all), series }
     }
 
     /// Exit radiance of a point in a direction, clamped at 0.

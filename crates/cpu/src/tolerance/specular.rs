@@ -24,7 +24,7 @@ pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
     (4.0 * PI).sqrt() * (device_sh_specular(order, normal_error) + (directions + 4.0) * EPSILON)
 }
 
-/// A coefficient of what arrives by `specular_gather`, from all visible intervals of a CPU reference, each with its error there, of
+/// A coefficient of what arrives by `specular_gather` or `bounce_march`, from all visible intervals of a CPU reference, each with its error there, of
 /// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
 ///
 /// An end closes the contribution of one place and opens the next one: twice its error times `brightest`, with Y_lm 1 at
@@ -32,19 +32,20 @@ pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
 /// direction, and its series sum with 100 ε; slices are polynomials whose coefficients sum to 15, 100 ε an end.
 pub fn device_arriving(
     all: &[Along],
-    error: impl Fn(&Cast) -> CastError,
+    error: impl Fn(&Along, &Cast) -> CastError,
     order: usize,
     of: &Slices,
 ) -> f64 {
     let brightest = of.brightest;
-    let cast_off = |cast: &Cast| {
-        let here = error(cast);
+    let cast_off = |along: &Along, cast: &Cast| {
+        let here = error(along, cast);
         let end = 2.0 * (here.elevation_rad + 100.0 * EPSILON) * brightest;
         let turned = order as f64 * here.elevation_rad + 100.0 * EPSILON;
         end + (cast.high_rad - cast.low_rad) * (here.radiance + turned * brightest)
     };
     let slice_off = |along: &Along| {
-        (of.normal + 100.0 * EPSILON) * brightest + along.casts.iter().map(cast_off).sum::<f64>()
+        let casts = along.casts.iter().map(|cast| cast_off(along, cast));
+        (of.normal + 100.0 * EPSILON) * brightest + casts.sum::<f64>()
     };
     2.0 * PI / all.len() as f64 * all.iter().map(slice_off).sum::<f64>()
 }

@@ -9,22 +9,24 @@ use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::bounce_ground::bounce_ground as ground_reference;
-use ridgelight_cpu::bounce_march::visible_intervals_along;
+use ridgelight_cpu::bounce_march::{visible_intervals_along, visible_series_along};
 use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::line_blocks::{Ground, MOST_LEVEL};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::shared::bounced::{Along, light_and_weight, radiance};
+use ridgelight_cpu::shared::bounced::{Along, Cast, light_and_weight, radiance};
 use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::specular_gather::arriving;
 use ridgelight_cpu::tolerance::{
-    BounceError, Gathered, Land, Slices, block_error, device_level, device_spline, march_error,
-    place_error, walk_error,
+    BounceError, CastError, EPSILON, Gathered, Land, Slices, block_error, device_arriving,
+    device_level, device_spline, march_error, place_error, walk_error,
 };
 use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
 
 use super::nodes::{casts, kept_nodes, places};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::horizon::cpu_reference::pyramid::{numbers, table_pairs};
+use crate::specular::cpu_reference::bounced::{magnitude, paired as paired_series};
 
 impl Run<'_> {
     /// The pyramid of exit radiance.
@@ -89,26 +91,53 @@ fn paired(got: &[[f64; 3]], want: &[[f64; 3]], tolerance: f64, at: [usize; 2]) -
     each(&got[..want.len()], |i| (want[i], [tolerance; 3]), at)
 }
 
-/// All visible intervals along every azimuth, in one dispatch.
+/// All visible intervals along every azimuth, after the last dispatch; with specular also what arrives as a series.
 pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTHS: usize = offset("BounceMarchPush", "azimuths");
-    const FIRST_AZIMUTH: usize = offset("BounceMarchPush", "first_azimuth");
     const LAST_AZIMUTH: usize = offset("BounceMarchPush", "last_azimuth");
     let azimuths = pushed(pass, AZIMUTHS);
-    assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
-    let exit = run.exit(pass);
+    if pushed(pass, LAST_AZIMUTH) < azimuths {
+        return Vec::new();
+    }
+    let (order, has_vectors) = (constant(pass, "order") as usize, constant(pass, "vectors") == 1);
+    let vectors = has_vectors.then(|| run.all_series(pass, "exit_vectors", order));
+    let exit = if has_vectors { Vec::new() } else { run.exit(pass) };
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
-    let (places, brightest) = (places(run, nodes), brightest(&exit));
+    let places = places(run, nodes);
+    let brightest = match &vectors {
+        Some(exit) => exit.iter().map(magnitude).fold(0.0, f64::max),
+        None => brightest(&exit),
+    };
     let cell_m = run.scene.field.cell_m();
+    let along = |i: usize| match &vectors {
+        Some(exit) => visible_series_along(&oracle, (order, exit), azimuths, places[i]),
+        None => visible_intervals_along(&oracle, &exit, azimuths, places[i]),
+    };
+    // Radiance by direction changes by n a radian, and its sum errs by 100 ε.
+    let error = |of: &Along, cast: &Cast| {
+        let here = march_error(cell_m, of, cast);
+        let turned =
+            if has_vectors { order as f64 * here.elevation_rad + 100.0 * EPSILON } else { 0.0 };
+        CastError { radiance: here.radiance + turned * brightest, ..here }
+    };
     let of = |i: usize| {
-        let all = visible_intervals_along(&oracle, &exit, azimuths, places[i]);
-        let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
+        let all = along(i);
         (radiance(&all), BounceError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
     };
-    each(&got, of, [0, across])
+    let mut pairs = each(&got, of, [0, across]);
+    if order > 0 {
+        for (i, got) in run.all_series(pass, "arriving", order).iter().enumerate() {
+            let (all, slices) = (along(i), run.slices(places[i], 1.0, brightest));
+            let error = |of: &Along, cast: &Cast| march_error(cell_m, of, cast);
+            let off = device_arriving(&all, error, order, &slices);
+            let want = arriving(order, &all).series;
+            pairs.extend(paired_series((got, &want), |_| off, places[i]));
+        }
+    }
+    pairs
 }
 
 /// The levels of an octave, and their entries in the table.

@@ -18,7 +18,7 @@ use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::specular_exit::{exit_series, reflected};
-use ridgelight_cpu::specular_gather::{Series, SpecularGather};
+use ridgelight_cpu::specular_gather::{Series, SpecularGather, arriving};
 use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, Land, Slices, device_arriving, device_sh_specular,
@@ -269,8 +269,8 @@ fn both(found: &Found) -> Vec<Probe> {
             let normal = Land::normal_at(field, border, at);
             let slices = Slices { normal, wedge: 1.0, brightest: bright };
             let all = reference.casts_along(at);
-            let want = reference.of(&all);
-            let of_series = device_arriving(&all, of_exit, order, &slices);
+            let want = arriving(order, &all);
+            let of_series = device_arriving(&all, |_, cast| of_exit(cast), order, &slices);
             let of_light = BounceError::of(&all, |_, cast| turned(cast), &slices).light[0];
             let phong = phong_specular.at(i);
             let of_view = (exit.normals[i], DVec3::Z);

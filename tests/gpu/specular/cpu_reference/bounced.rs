@@ -10,7 +10,7 @@ use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::specular_exit::{exit_series, reflected};
-use ridgelight_cpu::specular_gather::{Series, SpecularGather};
+use ridgelight_cpu::specular_gather::{Series, SpecularGather, arriving};
 use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, device_arriving, device_level, device_sh_specular,
     device_specular_exit, device_specular_visibility, stored_f16,
@@ -71,7 +71,7 @@ pub(crate) fn paired(
 }
 
 /// The sum of magnitudes of the largest channel.
-fn magnitude(series: &Series) -> f64 {
+pub(crate) fn magnitude(series: &Series) -> f64 {
     let sum = |c: usize| series.iter().map(|s| s[c].abs()).sum::<f64>();
     (0..3).map(sum).fold(0.0, f64::max)
 }
@@ -265,9 +265,9 @@ pub(crate) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (i, (got, series)) in got.iter().zip(&series).enumerate() {
         let at = [i / cols, i % cols];
         let all = reference.casts_along(at);
-        let want = reference.of(&all);
+        let want = arriving(order, &all);
         let slices = run.slices(at, 1.0, bright);
-        let of_series = device_arriving(&all, |cast| gathered.error(cast), order, &slices);
+        let of_series = device_arriving(&all, |_, cast| gathered.error(cast), order, &slices);
         let off = BounceError::of(&all, |_, cast| error(cast), &slices).light;
         pairs.extend(paired((series, &want.series), |_| of_series, at));
         pairs.extend([0, 1, 2].map(|c| Pair {
