@@ -8,7 +8,7 @@ use super::figures::{RESULTS, cells, fill, result, wrong};
 /// Mode | kind | file of benches/results | measured error. `{A;B@2}` is cell 2, counted from 0, of the first row
 /// that begins with the cells A and B; `{max@2}` the largest number of column 2; `{after TEXT}` the word
 /// after a text; `{trade TEXT}` the error of the line with these settings.
-const MODES: [&str; 18] = [
+const MODES: [&str; 17] = [
     "horizons: `--lines exact` | exact | accuracy_mt_washington_256 | worst horizon {exact@6}°",
     "horizons: `--method brute-force` | exact but for rounding | accuracy_mt_washington_256 | worst horizon {brute@6}°",
     "horizons: sweep, the default | approximate, never too high | accuracy_mt_washington_256 | horizons {1;aimed-around@2}° mean, \
@@ -30,12 +30,9 @@ const MODES: [&str; 18] = [
     "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (noise \
      {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
     "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;32;slices@4}, {20;32;slices@4}, {1000;32;slices@4} %",
-    "indirect Phong specular, exponent 1, 5, 20: the default | approximate | gloss | {0.4;0.5;1;pyramid;vector;4@6}, \
-     {0.4;0.5;5;pyramid;vector;4@6}, {0.4;0.5;20;pyramid;vector;4@6} % of the indirect light, {0.4;0.5;1;pyramid;vector;4@8}, \
-     {0.4;0.5;5;pyramid;vector;4@8}, {0.4;0.5;20;pyramid;vector;4@8} % of all light",
-    "the same, `--bounce-engine brute-force --sh-order 6` | approximate | gloss | {0.4;0.5;1;brute-force;vector;6@6}, \
-     {0.4;0.5;5;brute-force;vector;6@6}, {0.4;0.5;20;brute-force;vector;6@6} % of the indirect light, \
-     {0.4;0.5;1;brute-force;vector;6@8}, {0.4;0.5;5;brute-force;vector;6@8}, {0.4;0.5;20;brute-force;vector;6@8} % of all light",
+    "its 2 bounces, exponent 5, 20 | approximate | gloss | {0.4;0.5;5;pyramid;vector;4@8}, \
+     {0.4;0.5;20;pyramid;vector;4@8} %; brute force {0.4;0.5;5;brute-force;vector;6@8}, \
+     {0.4;0.5;20;brute-force;vector;6@8} %",
     "edit of a rectangle | exact | edits | the same bits as a whole frame",
 ];
 
