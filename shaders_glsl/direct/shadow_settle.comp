@@ -2,7 +2,7 @@
 // nearer swept line is shadowed from, then a walk over the grid point's own line that skips blocks of cells below the
 // horizon found so far.
 // Reads: lane_heights, maxima, azimuths, shadows, doubtful (see shadow_shade).
-// Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1).
+// Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1), light_vector (see sun_light.glsl).
 // One workgroup is 16 march positions of 4 TILE_FOURS lanes. Its invocations share the grid points that are marked: one
 // invocation is one azimuth of one grid point, so that neighbours walk alike.
 #version 460
@@ -19,6 +19,7 @@ layout(constant_id = 3) const int MOST_STEPS = 60000;
 layout(constant_id = 4) const int TILE_FOURS = 8;
 // Loads corners only in cells and maxima only in blocks. Off on CPU devices, as llvmpipe runs both sides of a branch.
 layout(constant_id = 5) const bool BRANCHES = false;
+layout(constant_id = 6) const bool HAS_VECTOR = false;
 const int LANE_STRIDE = 1;
 const bool THIN_ROWS = false;
 const bool THIN_COLS = false;
@@ -29,6 +30,7 @@ layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32ui) uniform readonly uimage2D doubtful;
 layout(binding = 4, r32f) uniform image2D sun_sum;
 layout(binding = 5, rgba32ui) uniform readonly uimage2DArray shadows;
+layout(binding = 6, rgba32f) uniform image2D light_vector;
 
 #include "rays/land.glsl"
 
@@ -55,6 +57,7 @@ shared uint open_count;
 shared uint open[64 * TILE_FOURS];
 // Light in one azimuth.
 shared float lights[64];
+shared vec3 vectors[64];
 
 // Heights of a cell's corners: north-west, north-east, south-west, south-east.
 vec4 corners_at(ivec2 cell) {
@@ -237,7 +240,11 @@ void main() {
         if ((open_bits[at >> 5] >> (at & 31u) & 1u) != 0u) {
             open[atomicAdd(open_count, 1u)] = place;
         } else if (clears != 0u) {
-            imageStore(sun_sum, texel_at(int(place >> 16), int(place & 0xffffu)), vec4(0.0));
+            ivec2 texel = texel_at(int(place >> 16), int(place & 0xffffu));
+            imageStore(sun_sum, texel, vec4(0.0));
+            if (HAS_VECTOR) {
+                imageStore(light_vector, texel, vec4(0.0));
+            }
         }
     }
     barrier();
@@ -258,6 +265,13 @@ void main() {
         float normal_up = inversesqrt(1.0 + ground.east * ground.east + ground.north * ground.north);
         vec3 normal = vec3(-ground.east, -ground.north, 1.0) * normal_up;
         lights[thread] = sun_light(azimuth, vec4(normal.x), vec4(normal.y), vec4(normal.z), vec4(lowest), SHAPE).x;
+        if (HAS_VECTOR) {
+            vec4 vector_east = vec4(0.0);
+            vec4 vector_north = vec4(0.0);
+            vec4 vector_up = vec4(0.0);
+            add_vector(vector_east, vector_north, vector_up, azimuth, vec4(lowest), bvec4(true));
+            vectors[thread] = vec3(vector_east.x, vector_north.x, vector_up.x);
+        }
         barrier();
         // In the order of the azimuths.
         if (exists && thread % azimuth_count == 0u) {
@@ -266,6 +280,13 @@ void main() {
                 sun += lights[thread + k];
             }
             imageStore(sun_sum, ground.texel, vec4(sun));
+            if (HAS_VECTOR) {
+                vec4 sum = clears == 0u ? imageLoad(light_vector, ground.texel) : vec4(0.0);
+                for (uint k = 0u; k < azimuth_count; k++) {
+                    sum.xyz += vectors[thread + k];
+                }
+                imageStore(light_vector, ground.texel, sum);
+            }
         }
         barrier();
     }

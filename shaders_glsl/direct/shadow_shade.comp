@@ -2,7 +2,7 @@
 // chord of the sun. The other grid points that face the sun are marked.
 // Reads: lane_heights, azimuths, shadows.
 // Writes: doubtful, at [march position][lane / 4]: the four lowest bits of a word mark grid points side by side along the lane axis.
-// Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1).
+// Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1), light_vector (see sun_light.glsl).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 //
 // A grid point's own line runs between two swept lines. Nothing on it, beyond its first step, is above the interpolation
@@ -17,12 +17,14 @@ layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
 // See sun_light.glsl.
 layout(constant_id = 2) const uint SHAPE = 0u;
+layout(constant_id = 3) const bool HAS_VECTOR = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rgba32ui) uniform readonly uimage2DArray shadows;
 layout(binding = 3, r32f) uniform image2D sun_sum;
 layout(binding = 4, r32ui) uniform writeonly uimage2D doubtful;
+layout(binding = 5, rgba32f) uniform image2D light_vector;
 
 #include "shared/angle.glsl"
 #include "horizon/met.glsl"
@@ -109,6 +111,9 @@ void main() {
     float ground = BORDER == BORDER_OPEN ? NO_SLOPE : 0.0;
 
     vec4 sun = vec4(0.0);
+    vec4 vector_east = vec4(0.0);
+    vec4 vector_north = vec4(0.0);
+    vec4 vector_up = vec4(0.0);
     bvec4 doubts = bvec4(false);
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         Azimuth azimuth = azimuth_at(azimuths, k);
@@ -128,7 +133,11 @@ void main() {
         bvec4 sees_all = bvec4(uvec4(known) & uvec4(over_shadow) & uvec4(ahead_is_low));
         doubts = bvec4(uvec4(doubts) | (uvec4(faces) & uvec4(not(sees_all))));
         vec4 light = sun_light(azimuth, normal_east, normal_north, normal_up, own, SHAPE);
-        sun += mix(vec4(0.0), light, bvec4(uvec4(faces) & uvec4(sees_all)));
+        bvec4 lit = bvec4(uvec4(faces) & uvec4(sees_all));
+        sun += mix(vec4(0.0), light, lit);
+        if (HAS_VECTOR) {
+            add_vector(vector_east, vector_north, vector_up, azimuth, own, lit);
+        }
     }
     uint marks = 0u;
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
@@ -137,6 +146,10 @@ void main() {
         if (!doubts[k]) {
             float sum = clears == 0u ? imageLoad(sun_sum, texel).x : 0.0;
             imageStore(sun_sum, texel, vec4(sum + sun[k]));
+            if (HAS_VECTOR) {
+                vec4 before = clears == 0u ? imageLoad(light_vector, texel) : vec4(0.0);
+                imageStore(light_vector, texel, before + vec4(vector_east[k], vector_north[k], vector_up[k], 0.0));
+            }
         }
     }
     imageStore(doubtful, ivec2(lane >> 2, march), uvec4(marks));

@@ -23,3 +23,16 @@ vec4 sun_light(Azimuth azimuth, vec4 east, vec4 north, vec4 up, vec4 lowest, uin
     bvec4 lit = lessThan(lowest, vec4(azimuth.high_slope));
     return mix(vec4(0.0), light * azimuth.weight * (1.0 / PI), lit);
 }
+
+// Adds the part of a sun's chord above `lowest` to the light vectors of four grid points: directions times irradiance (Gershun 1939).
+// All of a sun of irradiance 1 gives its direction.
+void add_vector(inout vec4 east, inout vec4 north, inout vec4 up, Azimuth azimuth, vec4 lowest, bvec4 lit) {
+    Moments above = elevation_moments(max(lowest, azimuth.low_slope));
+    Moments top = elevation_moments(vec4(azimuth.high_slope));
+    lit = bvec4(uvec4(lit) & uvec4(lessThan(lowest, vec4(azimuth.high_slope))));
+    vec4 weight = mix(vec4(0.0), vec4(azimuth.weight), lit);
+    vec4 along = weight * (above.flat_part - top.flat_part);
+    east += along * azimuth.cos_phi;
+    north += along * azimuth.sin_phi;
+    up += weight * (above.vertical - top.vertical);
+}

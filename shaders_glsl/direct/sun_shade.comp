@@ -2,7 +2,7 @@
 // batches; and the Phong specular of a key light.
 // Reads: lane_heights, azimuths, lattice, phong_map, dirty_texels, edit_list.
 // Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light),
-// specular_sum (exit radiance, RGB).
+// light_vector (see sun_light.glsl), specular_sum (exit radiance, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -25,6 +25,8 @@ layout(constant_id = 5) const bool MARCHES_ROWS = false;
 // For SHAPE_PATCH.
 layout(constant_id = 6) const bool HAS_SPECULAR = false;
 layout(constant_id = 7) const bool SPECULAR_IS_MAP = false;
+// For SHAPE_DISC.
+layout(constant_id = 8) const bool HAS_VECTOR = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
@@ -39,12 +41,16 @@ layout(binding = 3, r32f) uniform image2D sun_sum;
 layout(binding = 4, rgba32f) uniform image2D specular_sum;
 // Phong exponent and scale.
 layout(binding = 5) uniform texture2D phong_map;
+layout(binding = 9, rgba32f) uniform image2D light_vector;
 
 // Sums of the four grid points, and their normals.
 vec4 sun;
 vec4 normal_east;
 vec4 normal_north;
 vec4 normal_up;
+vec4 vector_east;
+vec4 vector_north;
+vec4 vector_up;
 
 void add_specular(Azimuth azimuth, vec4 lowest);
 
@@ -54,6 +60,9 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     sun += sun_light(azimuth, normal_east, normal_north, normal_up, lowest, SHAPE);
     if (HAS_SPECULAR) {
         add_specular(azimuth, lowest);
+    }
+    if (HAS_VECTOR) {
+        add_vector(vector_east, vector_north, vector_up, azimuth, lowest, bvec4(true));
     }
 }
 
@@ -106,6 +115,9 @@ void main() {
             sun[k] = imageLoad(sun_sum, texel_at(min(lane + k, lanes - 1), march)).x;
         }
     }
+    vector_east = vec4(0.0);
+    vector_north = vec4(0.0);
+    vector_up = vec4(0.0);
     vec4 scales = vec4(1.0);
     if (HAS_SPECULAR) {
         mirrored_light = vec4(0.0);
@@ -127,6 +139,10 @@ void main() {
         ivec2 at = texel_at(lane + k, march);
         if (lit[k]) {
             imageStore(sun_sum, at, vec4(sun[k]));
+        }
+        if (HAS_VECTOR) {
+            vec4 before = clears == 0u ? imageLoad(light_vector, at) : vec4(0.0);
+            imageStore(light_vector, at, before + vec4(vector_east[k], vector_north[k], vector_up[k], 0.0));
         }
         if (HAS_SPECULAR) {
             vec4 before = imageLoad(specular_sum, at);

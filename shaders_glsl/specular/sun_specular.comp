@@ -1,8 +1,9 @@
 // Computes: Phong specular reflection of a sun towards the view, at every grid point: the mean of the lobe over the sun's
 // disc, times the sun's visible fraction. That fraction is the sun's diffuse light over its
-// unoccluded diffuse light. Where another bounce follows, also the incident light of the sun as a series, all of it
+// unoccluded diffuse light. With a light vector, the visible part of a disc that is not wholly visible has the vector's magnitude, and
+// its middle is the vector's direction. Where another bounce follows, also the incident light of the sun as a series, all of it
 // from its centre.
-// Reads: lane_heights, sun_sum, phong_map.
+// Reads: lane_heights, sun_sum, light_vector, phong_map.
 // Reads and writes: specular_sum (exit radiance, RGB), arriving (four coefficients per layer, channel after channel).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
@@ -16,6 +17,7 @@ layout(constant_id = 2) const bool SPECULAR_IS_MAP = false;
 // Order of the series; 0 for none. One channel of radiance.
 layout(constant_id = 3) const int ORDER = 0;
 layout(constant_id = 4) const bool GREY = false;
+layout(constant_id = 5) const bool HAS_VECTOR = false;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -24,6 +26,7 @@ layout(binding = 2, rgba32f) uniform image2D specular_sum;
 // Phong exponent and scale.
 layout(binding = 3) uniform texture2D phong_map;
 layout(binding = 4, rgba32f) uniform image2DArray arriving;
+layout(binding = 5) uniform texture2D light_vector;
 
 layout(push_constant) uniform SunSpecularPush {
     int cols;
@@ -46,38 +49,64 @@ layout(push_constant) uniform SunSpecularPush {
 const float NODES[15] = float[](0.5, 0.2113248654, 0.7886751346, 0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558,
                                 0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050,
                                 0.8983332387, 0.9801449282);
+// Above it a sun is wholly visible.
+const float WHOLE = 0.999;
 const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0506142681,
                                   0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172,
                                   0.0506142681);
 
-// Integral of the lobe of exponent n over the sun's disc, for irradiance 1. Each ring has a share of the solid angle that is
+// An ellipse on the sphere: its middle, and two half axes in radii of the sun.
+struct Ellipse {
+    vec3 middle;
+    vec3 along;
+    vec3 across;
+};
+
+// The visible part of the sun, from its light vector: the segment that a straight edge leaves. Its middle lies c radii from the
+// sun's; its second moments are those of an ellipse whose half axes are 1 - c, to 0.05, and sqrt((1 - c) (1 + 1.7 c)), to 0.01.
+Ellipse visible_part(vec3 vector, float share) {
+    vec3 middle = vector / max(share, 1e-30);
+    float radius = sqrt(level.w * (2.0 - level.w));
+    vec3 apart = middle - towards.xyz;
+    apart -= dot(apart, middle) * middle;
+    float off = length(apart);
+    float c = min(off / radius, 1.0);
+    // Where the middles nearly agree the axes do, too.
+    vec3 along = off > 1e-4 * radius ? apart / off : level.xyz;
+    return Ellipse(middle, (1.0 - c) * along, sqrt((1.0 - c) * (1.0 + 1.7 * c)) * cross(middle, along));
+}
+
+// Integral of the lobe of exponent n over the sun's disc or an ellipse of it, for irradiance 1. Each ring has a share of the solid angle that is
 // its weight, and four directions for each ring. The error that was measured is 2.5e-4 of the lobe's peak. Where
 // n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that. At 90 degrees from the mirror
 // direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings.
 // A lobe that hardly changes across the disc is taken at its centre, unless a disc of ten times the radius reaches that end.
-float disc_density(vec3 mirror, float n) {
+float disc_density(vec3 mirror, float n, Ellipse part) {
     n = min(n, 48.0 / max(towards.w, 1e-30));
     float wide = n * towards.w;
     // Radiance times solid angle of a disc of irradiance 1.
     float full = 2.0 / (2.0 - level.w);
     float radius = sqrt(level.w * (2.0 - level.w));
-    float to_end = abs(dot(mirror, towards.xyz));
+    float to_end = abs(dot(mirror, part.middle));
     if (wide <= 1e-3 && to_end >= 10.0 * radius) {
-        return full * phong_lobe(towards.xyz - mirror, n);
+        return full * phong_lobe(part.middle - mirror, n);
     }
     int rings = to_end < 2.0 * radius ? 8 : wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
-    vec3 up = cross(towards.xyz, level.xyz);
+    vec2 squared = vec2(dot(part.along, part.along), dot(part.across, part.across));
     float sum = 0.0;
     for (int i = 0; i < rings; i++) {
         float h = level.w * NODES[rings - 1 + i];
         float across = sqrt(h * (2.0 - h));
-        vec3 apart = (towards.xyz - mirror) - h * towards.xyz;
         float ring = 0.0;
         for (int j = 0; j < rings; j++) {
             float angle = (float(j) + 0.5) * (HALF_PI / float(rings));
-            vec3 a = across * (cosine(angle) * level.xyz + sine(angle) * up);
-            vec3 b = across * (cosine(angle) * up - sine(angle) * level.xyz);
-            ring += phong_lobe(apart + a, n) + phong_lobe(apart - a, n) + phong_lobe(apart + b, n) + phong_lobe(apart - b, n);
+            vec2 turn = vec2(cosine(angle), sine(angle));
+            vec3 a = across * (turn.x * part.along + turn.y * part.across);
+            vec3 b = across * (turn.x * part.across - turn.y * part.along);
+            // As far below the tangent plane as directions of this angle are.
+            vec3 apart_a = (part.middle - mirror) - (h * dot(turn * turn, squared)) * part.middle;
+            vec3 apart_b = (part.middle - mirror) - (h * dot(turn * turn, squared.yx)) * part.middle;
+            ring += phong_lobe(apart_a + a, n) + phong_lobe(apart_a - a, n) + phong_lobe(apart_b + b, n) + phong_lobe(apart_b - b, n);
         }
         sum += WEIGHTS[rings - 1 + i] * ring / float(4 * rings);
     }
@@ -139,10 +168,22 @@ void main() {
         float facing = dot(normal, towards.xyz);
         // Where the own plane cuts the disc, the visible fraction can exceed the mean cosine's.
         float visible = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
-        float density = facing > 0.0 ? of.y * disc_density(mirror, of.x) : 0.0;
+        Ellipse part = Ellipse(towards.xyz, level.xyz, cross(towards.xyz, level.xyz));
+        float share = visible;
+        bool reaches = facing > 0.0;
+        if (HAS_VECTOR) {
+            vec3 vector = texelFetch(light_vector, at, 0).xyz;
+            float magnitude = length(vector);
+            if (magnitude < WHOLE) {
+                share = magnitude;
+                part = visible_part(vector, magnitude);
+                reaches = true;
+            }
+        }
+        float density = reaches ? of.y * disc_density(mirror, of.x, part) : 0.0;
         // A: written by earlier SH passes.
         vec4 before = imageLoad(specular_sum, at);
-        vec4 light = vec4(colour.rgb * (visible * density), 0.0);
+        vec4 light = vec4(colour.rgb * (share * density), 0.0);
         vec4 sum = before + light;
         imageStore(specular_sum, at, colour.w > 0.0 ? light : sum);
         if (ORDER > 0) {

@@ -301,6 +301,12 @@ impl<'a> ActiveLights<'a> {
         self.half_deviations(TAU)
     }
 
+    /// Whether specular depends on which part of a sun is visible.
+    pub(super) fn needs_vector(&self, sun: &Sun) -> bool {
+        self.specular
+            .is_some_and(|specular| crate::passes::sun_specular::needs_vector(specular, sun))
+    }
+
     /// A width in halves of the standard deviation of the surface's narrowest lobe, 1/√(n + 1) radians, rounded up.
     fn half_deviations(&self, width_rad: f64) -> u32 {
         let narrowest = self.specular.map(|specular| f64::from(specular.largest().exponent));

@@ -21,8 +21,18 @@ pub(crate) fn plan(
     batch: &Batch,
     (part, shape): (&str, Shape),
     [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
+    light_vector: Option<ResourceId>,
 ) {
     let axis = batch.axis;
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        ("maxima", walked.maxima),
+        ("azimuths", azimuths),
+        ("doubtful", shadows.doubtful(axis)),
+        ("sun_sum", sun_sum),
+        ("shadows", lattice),
+    ];
+    bound.extend(light_vector.map(|vector| ("light_vector", vector)));
     let is_gpu = !shadows.limits.is_cpu;
     let busy_fours = (axis.texels() / (u64::from(FOUR_TEXELS) * BUSY_GROUPS)) as u32;
     let tile_fours = if is_gpu { busy_fours.clamp(1, MOST_FOURS) } else { MOST_FOURS };
@@ -45,6 +55,7 @@ pub(crate) fn plan(
                 most_steps: most_steps as i32,
                 tile_fours: tile_fours as i32,
                 branches: is_gpu,
+                has_vector: light_vector.is_some(),
             },
             &part,
             "exact horizons of the marked texels",
@@ -57,14 +68,7 @@ pub(crate) fn plan(
                 warm_up: axis.warm_up as i32,
                 tilt: walked.tilt,
             },
-            &[
-                ("lane_heights", lane_heights),
-                ("maxima", walked.maxima),
-                ("azimuths", azimuths),
-                ("doubtful", shadows.doubtful(axis)),
-                ("sun_sum", sun_sum),
-                ("shadows", lattice),
-            ],
+            &bound,
             // The heights decide how many texels are marked and how far their walks go.
             0,
             0,

@@ -12,15 +12,25 @@ pub(crate) fn plan(
     batch: &Batch,
     (part, shape): (&str, Shape),
     [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
+    light_vector: Option<ResourceId>,
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        ("azimuths", azimuths),
+        ("shadows", lattice),
+        ("sun_sum", sun_sum),
+        ("doubtful", shadows.doubtful(axis)),
+    ];
+    bound.extend(light_vector.map(|vector| ("light_vector", vector)));
     let pass = builder.pass(
         shaders::ShadowShade {
             layer_shift: batch.layer_shift as i32,
             border: border as u32,
             marches_rows: axis.marches_rows,
             shape: shape as u32,
+            has_vector: light_vector.is_some(),
         },
         part,
         "texels that see all of a chord of the sun, or none of it",
@@ -35,14 +45,9 @@ pub(crate) fn plan(
             azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
         },
-        &[
-            ("lane_heights", lane_heights),
-            ("azimuths", azimuths),
-            ("shadows", lattice),
-            ("sun_sum", sun_sum),
-            ("doubtful", shadows.doubtful(axis)),
-        ],
-        axis.texels() * (16 + u64::from(batch.count) * (4 + 8)),
+        &bound,
+        axis.texels()
+            * (16 + if light_vector.is_some() { 16 } else { 0 } + u64::from(batch.count) * (4 + 8)),
         axis.texels() * u64::from(batch.count),
     );
     pass.azimuths = batch.azimuths();

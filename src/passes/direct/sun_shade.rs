@@ -29,7 +29,7 @@ pub(crate) fn plan(
     part: &str,
     shape: Shape,
     lattice: Option<ResourceId>,
-    [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
+    ([lane_heights, azimuths, sun_sum], light_vector): ([ResourceId; 3], Option<ResourceId>),
     specular: Option<KeySpecular>,
     edited: Option<[ResourceId; 2]>,
 ) {
@@ -37,6 +37,7 @@ pub(crate) fn plan(
     let mut bound =
         vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
+    bound.extend(light_vector.map(|vector| ("light_vector", vector)));
     let mut push = shaders::ShadePush::of(batch, cell_m);
     if let Some(KeySpecular { phong, radiance, eye_m, specular_sum, begins }) = specular {
         bound.push(("specular_sum", specular_sum));
@@ -63,6 +64,7 @@ pub(crate) fn plan(
             marches_rows: axis.marches_rows,
             has_specular: specular.is_some(),
             specular_is_map: specular.is_some_and(|s| s.phong.map.is_some()),
+            has_vector: light_vector.is_some(),
         },
         part,
         match shape {
@@ -79,6 +81,7 @@ pub(crate) fn plan(
         axis.texels()
             * (12
                 + if specular.is_some() { 2 * 16 } else { 0 }
+                + if light_vector.is_some() { 16 } else { 0 }
                 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.texels() * u64::from(batch.count),
     );

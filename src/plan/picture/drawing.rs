@@ -212,6 +212,9 @@ impl Drawing<'_> {
         for (i, (batches, Aimed { name, shape, colour })) in
             batches_of_each.iter().zip(lights).enumerate()
         {
+            let sun = self.active.suns.get(i).map(|(_, sun)| sun);
+            let is_wide = sun.is_some_and(|sun| self.active.needs_vector(sun));
+            let light_vector = self.images.light_vector.filter(|_| is_wide);
             let mut walked = None;
             for batch in batches {
                 let part = part(&name, batch, batches);
@@ -224,20 +227,37 @@ impl Drawing<'_> {
                     let field = &self.scene.field;
                     let of = (part.as_str(), shape);
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
-                    passes::shadow_shade::plan(builder, shadows, (border, cell_m), batch, of, ids);
+                    let ground = (border, cell_m);
+                    passes::shadow_shade::plan(
+                        builder,
+                        shadows,
+                        ground,
+                        batch,
+                        of,
+                        ids,
+                        light_vector,
+                    );
                     let lit = (field, border);
                     let walked = *walked.get_or_insert_with(|| {
                         let (aim, heights) = ((self.active.aim(i), cell_m), sweeping.heights());
                         shadows.plan_maxima(builder, (&name, i), aim, heights)
                     });
                     let shadows = (shadows, walked);
-                    passes::shadow_settle::plan(builder, shadows, lit, batch, of, ids);
+                    passes::shadow_settle::plan(
+                        builder,
+                        shadows,
+                        lit,
+                        batch,
+                        of,
+                        ids,
+                        light_vector,
+                    );
                     continue;
                 }
                 if self.edited.is_none() {
                     sweeping.plan_all(builder, &[(*batch, part.clone())]);
                 }
-                let ids = [lanes, sweeping.azimuths, sum];
+                let ids = ([lanes, sweeping.azimuths, sum], light_vector);
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
@@ -247,7 +267,7 @@ impl Drawing<'_> {
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
             if let (Some(&(_, sun)), Some(batch)) = (self.active.suns.get(i), batches.last()) {
-                self.sun_specular(&name, &sun, batch, sum);
+                self.sun_specular(&name, &sun, batch, (sum, light_vector));
             }
         }
     }

@@ -30,6 +30,8 @@ pub(super) struct Images {
     pub sky_sum: Option<ResourceId>,
     pub env_sum: Option<ResourceId>,
     pub sun_sum: Option<ResourceId>,
+    /// Of a sun whose visible part decides its specular.
+    pub light_vector: Option<ResourceId>,
     pub sphere_sum: Option<ResourceId>,
     /// Direct specular of all lights.
     pub specular_sum: Option<ResourceId>,
@@ -82,6 +84,8 @@ impl Images {
         let sky_sum = sum(active.sky.is_some() || view || need_share, "sky_sum", Format::R32Float);
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
         let sun_sum = sum(active.aimed().next().is_some(), "sun_sum", Format::R32Float);
+        let needs_vector = active.suns.iter().any(|(_, sun)| active.needs_vector(sun));
+        let light_vector = sum(needs_vector, "light_vector", Format::Rgba32Float);
         let sphere_sum = sum(!spheres.is_empty(), "sphere_sum", Format::Rgba32Float);
         let specular_sum = sum(has_specular, "specular_sum", Format::Rgba32Float);
         Self {
@@ -99,6 +103,7 @@ impl Images {
             sky_sum,
             env_sum,
             sun_sum,
+            light_vector,
             sphere_sum,
             specular_sum,
             specular_layer,

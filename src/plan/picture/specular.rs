@@ -180,11 +180,17 @@ impl Drawing<'_> {
     }
 
     /// Specular of a sun, from its diffuse irradiance.
-    pub(super) fn sun_specular(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
+    pub(super) fn sun_specular(
+        &mut self,
+        name: &str,
+        sun: &Sun,
+        batch: &Batch,
+        (sum, light_vector): (ResourceId, Option<ResourceId>),
+    ) {
         let Some((specular, phong)) = self.images.specular_sum.zip(self.phong()) else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Some(sweeping) = &self.sweeping else { return };
-        let ids = [sweeping.lane_heights(batch), sum, specular];
+        let ids = ([sweeping.lane_heights(batch), sum, specular], light_vector);
         let begins = !std::mem::replace(&mut self.specular_is_begun, true);
         let field = (batch.axis, border, cell_m);
         let bounced = self.bounced_by_direction();

@@ -346,6 +346,13 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, phong_specular, false, false),
         picture("a lobe by slices", mirrored.clone(), quality, true, false),
+        picture(
+            "a lobe under swept suns",
+            mirrored.clone(),
+            Quality { method: Method::Sweep, ..quality },
+            true,
+            false,
+        ),
         with_an_eye(picture(
             "a lobe by slices, with an eye, open",
             shiny_sky(2.5, Border::Open),

@@ -294,8 +294,10 @@ fn a_wide_sun_is_mirrored_as_a_disc() {
     assert!(checked >= 16 && wrong >= 6, "{checked} {wrong}");
 }
 
-/// Suns in a lobe match the quadrature: a point to f32's rounding; a disc by the lobe's change over it, √(n/e) of its
-/// peak a radian and its diameter at most, where the horizon or the own plane cuts it.
+/// Suns in a lobe match the quadrature: a point to f32's rounding. Where the horizon or the own plane cuts a disc of radius r, its light
+/// and the middle of its visible part are known, from chords h = 1/16 of a radius apart: h² of the light. Squared widths of the part differ by
+/// r²/4 at most from those taken, for a second derivative of n in both directions; a third one, 1.38 n^1.5, meets r³ at most.
+/// A thousandth of the disc may be hidden unnoticed.
 #[test]
 fn suns_in_a_lobe_are_the_quadratures() {
     let mut gpu = Device::new();
@@ -331,8 +333,10 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 // For a sun with a cosine of a tenth or less: ten times f32's share.
                 let rounded = device_sun_specular(n, error.normal(), 0.1);
                 let widest = scene.lights.suns[0];
-                let uneven = disc_rings(n, &widest, 0.0).max(disc_rings(n, &widest, 1.0))
-                    + peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
+                let wide = n * radius * radius;
+                let cut = 1.0 / 256.0 + wide / 4.0 + 1.38 / 6.0 * wide.powf(1.5) + 1e-3;
+                let uneven =
+                    1.5 * disc_rings(n, &widest, 0.0).max(disc_rings(n, &widest, 1.0)) + peak * cut;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);
                 let off = (got - want).abs();

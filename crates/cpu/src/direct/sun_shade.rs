@@ -16,6 +16,27 @@ pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     sun
 }
 
+/// The light vector of one azimuth of a disc, above a slope: directions times irradiance.
+pub fn vector_slice(azimuth: &Azimuth, lowest: f64) -> DVec3 {
+    let (low, high) = (f64::from(azimuth.low_slope), f64::from(azimuth.high_slope));
+    if lowest >= high {
+        return DVec3::ZERO;
+    }
+    let [from, to] = [elevation_moments(lowest.max(low)), elevation_moments(high)];
+    let (along, up) = (from[0] - to[0], from[1] - to[1]);
+    let [cos, sin] = [azimuth.cos_phi, azimuth.sin_phi].map(f64::from);
+    f64::from(azimuth.weight) * DVec3::new(along * cos, along * sin, up)
+}
+
+/// The light vector of all azimuths.
+pub fn vector_at(swept: &Swept, col: i32, row: i32) -> DVec3 {
+    let mut vector = DVec3::ZERO;
+    swept.add_all([col, row], true, |_, azimuth, lowest, _| {
+        vector += vector_slice(azimuth, lowest);
+    });
+    vector
+}
+
 /// The light of one azimuth, above a slope.
 pub fn sun_slice(azimuth: &Azimuth, shape: Shape, lowest: f64, normal: DVec3) -> f64 {
     let along = |cos: f32, sin: f32| normal.x * f64::from(cos) + normal.y * f64::from(sin);

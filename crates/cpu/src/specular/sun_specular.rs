@@ -9,14 +9,19 @@ use std::f64::consts::{PI, TAU};
 /// Exit radiance towards `view` for irradiance 1 at a normal, from the sun's light on diffuse ground there ([`crate::sun_shade`]).
 ///
 /// The mean of the Phong lobe over the disc, times its visible part. Where a grid point's own plane or a horizon cuts the
-/// disc, that part is weighted by the cosine and not by the lobe.
+/// disc, that part is weighted by the cosine and not by the lobe. With a light vector the mean is over the visible part.
 pub fn specular_on(
     (normal, view): (DVec3, DVec3),
     sun: &Sun,
     phong: PhongSpecular,
-    sun_sum: f64,
+    (sun_sum, vector): (f64, Option<DVec3>),
 ) -> f64 {
     let [exponent, scale] = [phong.exponent, phong.scale].map(f64::from);
+    if let Some(vector) = vector.filter(|vector| vector.length() < WHOLE) {
+        let part = visible_part(vector, sun);
+        let mirror = mirrored(normal, view);
+        return scale * vector.length() * part_density(mirror, sun, exponent, &part);
+    }
     let visible = visible(normal, towards(sun), sun_sum);
     if visible == 0.0 {
         return 0.0;
@@ -27,6 +32,39 @@ pub fn specular_on(
 /// Integral of a lobe about `mirror` over a sun's disc, for irradiance 1. Lobes narrower than a seventh of the disc's
 /// radius are widened to that: n r² is 48 at most.
 pub fn disc_density(mirror: DVec3, sun: &Sun, exponent: f64) -> f64 {
+    let centre = towards(sun);
+    let (sin, cos) = sun.azimuth_rad.sin_cos();
+    let level = DVec3::new(-sin, cos, 0.0);
+    let whole = Ellipse { middle: centre, half_axes: [level, centre.cross(level)] };
+    part_density(mirror, sun, exponent, &whole)
+}
+
+/// An ellipse on the sphere: its middle, and two half axes in radii of the sun.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipse {
+    /// A direction.
+    pub middle: DVec3,
+    /// At right angles to it and to one another.
+    pub half_axes: [DVec3; 2],
+}
+
+/// The visible part of a sun of a light vector: the segment that a straight edge leaves. Its middle lies c radii from the sun's; its
+/// second moments are those of an ellipse whose half axes are 1 - c, to 0.05, and √((1 - c) (1 + 1.7 c)), to 0.01.
+pub fn visible_part(vector: DVec3, sun: &Sun) -> Ellipse {
+    let (middle, radius) = (vector.normalize_or_zero(), (0.5 * sun.diameter_rad).sin());
+    let apart = (middle - towards(sun)).reject_from(middle.try_normalize().unwrap_or(DVec3::Z));
+    let c = (apart.length() / radius).min(1.0);
+    let (sin, cos) = sun.azimuth_rad.sin_cos();
+    let along = match apart.length() > 1e-4 * radius {
+        true => apart.normalize(),
+        false => DVec3::new(-sin, cos, 0.0),
+    };
+    let across = ((1.0 - c) * (1.0 + 1.7 * c)).sqrt();
+    Ellipse { middle, half_axes: [(1.0 - c) * along, across * middle.cross(along)] }
+}
+
+/// The same over an ellipse of the disc.
+fn part_density(mirror: DVec3, sun: &Sun, exponent: f64, part: &Ellipse) -> f64 {
     let radius = if sun.is_point() { 0.0 } else { 0.5 * sun.diameter_rad };
     let n = exponent.min(WIDEST / (radius * radius));
     let density = |e: DVec3| {
@@ -34,13 +72,10 @@ pub fn disc_density(mirror: DVec3, sun: &Sun, exponent: f64) -> f64 {
         // 0 to the power of 0 would be light from behind.
         if cosine <= 0.0 { 0.0 } else { (n + 1.0) / TAU * cosine.powf(n) }
     };
-    let centre = towards(sun);
+    let Ellipse { middle, half_axes: [along, up] } = *part;
     if radius == 0.0 {
-        return density(centre);
+        return density(middle);
     }
-    let (sin, cos) = sun.azimuth_rad.sin_cos();
-    let level = DVec3::new(-sin, cos, 0.0);
-    let up = centre.cross(level);
     let depth = 2.0 * (0.5 * radius).sin().powi(2);
     // The midpoint rule over 1 - cos of the angle to the centre, with as many directions as lobes need.
     let mut sum = 0.0;
@@ -49,12 +84,15 @@ pub fn disc_density(mirror: DVec3, sun: &Sun, exponent: f64) -> f64 {
         let across = (h * (2.0 - h)).sqrt();
         for k in 0..AROUND {
             let (sin, cos) = (TAU * (k as f64 + 0.5) / AROUND as f64).sin_cos();
-            sum += density((1.0 - h) * centre + across * (cos * level + sin * up));
+            let offset = cos * along + sin * up;
+            sum += density((1.0 - h * offset.length_squared()) * middle + across * offset);
         }
     }
     2.0 / (2.0 - depth) * sum / (RINGS * AROUND) as f64
 }
 
+/// The magnitude of a light vector above which a sun is wholly visible.
+pub const WHOLE: f64 = 0.999;
 /// Exponent times the squared radius of a disc, at most.
 const WIDEST: f64 = 48.0;
 const RINGS: usize = 128;

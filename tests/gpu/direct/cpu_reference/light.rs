@@ -247,6 +247,7 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.floats(pass, "sun_sum").expect("written");
     let [cols, _] = run.size();
     let mirrored = key_specular(run, pass, &error);
+    let vectors = run.vectors(pass);
     let mut pairs = run.swept(range.clone(), fuse_of(pass), |swept| {
         let tolerance = error.sun(sun_reference::weights(swept.azimuths, shape));
         // A point sun within the horizon's error may be hidden or not.
@@ -265,6 +266,12 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 let want = sun_reference::sun_at(swept, shape, col, row);
                 let at = [range.len(), i / cols, i % cols];
                 pairs.push(Pair { got: (*got).into(), want, tolerance, at });
+                if let Some(vectors) = &vectors {
+                    let want = sun_reference::vector_at(swept, col, row);
+                    let tolerance = PI * tolerance;
+                    let of = |c: usize| Pair { got: vectors[i][c], want: want[c], tolerance, at };
+                    pairs.extend([0, 1, 2].map(of));
+                }
             }
         }
         assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());

@@ -1,7 +1,9 @@
 //! Suns by shadow heights.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
+use glam::DVec3;
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, CELL, Shape};
@@ -84,10 +86,36 @@ fn so_far(run: &mut Run, (first, count, clears): (u32, u32, u32)) -> (Range<usiz
 }
 
 /// Light by exact horizons, at every texel; none where a point sun grazes the ground.
-fn exact(run: &Run, range: Range<usize>, shape: Shape, error: &ShadeError) -> Vec<Option<f64>> {
+fn exact(
+    run: &Run,
+    range: Range<usize>,
+    shape: Shape,
+    error: &ShadeError,
+) -> Vec<Option<(f64, DVec3)>> {
     let warm_up = [run.warm_up(false), run.warm_up(true)];
     let azimuths = &run.plan.azimuths[range];
     settled(run.heights(), azimuths, warm_up, (shape, error.lowest_slope()))
+}
+
+/// Light vectors, if there are any, of `places`.
+fn vector_pairs(
+    run: &mut Run,
+    pass: &Pass,
+    want: &[Option<(f64, DVec3)>],
+    (tolerance, number): (f64, usize),
+    is_compared: impl Fn(usize) -> bool,
+) -> Vec<Pair> {
+    let Some(got) = run.vectors(pass) else { return Vec::new() };
+    let [cols, _] = run.size();
+    // Of the same sum, but for the product with the normal and the division by π.
+    let places = got.iter().zip(want).enumerate().filter(|(i, _)| is_compared(*i));
+    let pairs = places.filter_map(|(i, (got, want))| {
+        let (_, want) = (*want)?;
+        let at = [number, i / cols, i % cols];
+        let tolerance = PI * tolerance;
+        Some([0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance, at }))
+    });
+    pairs.flatten().collect()
 }
 
 fn shape_of(pass: &Pass) -> Shape {
@@ -111,6 +139,7 @@ pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     let mut decided = 0;
+    let mut marked = vec![false; got.len()];
     for i in 0..got.len() {
         let (col, row) = (i % cols, i / cols);
         let by_row = run.plan.azimuths[first as usize].marches_rows();
@@ -133,11 +162,13 @@ pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             pairs.push(Pair { got, want: wanted, tolerance: 0.0, at });
             decided += 1;
         }
-        if let Some(want) = want[i].filter(|_| !is_marked) {
+        marked[i] = is_marked;
+        if let Some((want, _)) = want[i].filter(|_| !is_marked) {
             pairs.push(Pair { got: got[i].into(), want, tolerance, at });
         }
     }
     assert!(decided * 10 >= got.len() * 9, "{decided} of {} decided", got.len());
+    pairs.extend(vector_pairs(run, pass, &want, (tolerance, range.len()), |i| !marked[i]));
     pairs
 }
 
@@ -153,15 +184,16 @@ pub(crate) fn shadow_settle(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let want = exact(run, range.clone(), shape, &error);
     let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()], shape));
     let [cols, _] = run.size();
-    let pairs: Vec<Pair> = got
+    let mut pairs: Vec<Pair> = got
         .iter()
-        .zip(want)
+        .zip(&want)
         .enumerate()
         .filter_map(|(i, (got, want))| {
             let at = [range.len(), i / cols, i % cols];
-            want.map(|want| Pair { got: (*got).into(), want, tolerance, at })
+            want.map(|(want, _)| Pair { got: (*got).into(), want, tolerance, at })
         })
         .collect();
     assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
+    pairs.extend(vector_pairs(run, pass, &want, (tolerance, range.len()), |_| true));
     pairs
 }

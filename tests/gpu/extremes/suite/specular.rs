@@ -175,7 +175,8 @@ impl Exit {
             let error = Land::normal_at(field, surface.border, at);
             let (phong, facing) = (phong_specular.at(i), normal.z);
             let diffuse = [bright * albedo * facing / PI; 3];
-            let mirrored = bright * specular_on((normal, DVec3::Z), sun, phong, facing / PI);
+            let mirrored =
+                bright * specular_on((normal, DVec3::Z), sun, phong, (facing / PI, None));
             exit.series.push(exit_series(&arriving, normal, phong, diffuse));
             exit.visible.push(diffuse.map(|d| d + mirrored));
             exit.normals.push(normal);

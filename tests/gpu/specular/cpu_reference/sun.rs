@@ -5,13 +5,21 @@ use ridgelight::plan::Pass;
 use ridgelight::scene::Sun;
 use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
-use ridgelight_cpu::sun_specular as specular_reference;
+use ridgelight_cpu::sun_specular::{self as specular_reference, WHOLE};
 use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular, disc_rings};
 
 use super::bounced::paired;
 use super::slices::{eye_of, view_from};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
-use crate::direct::cpu_reference::light::Rgb;
+use crate::direct::cpu_reference::light::{Rgb, rgb};
+
+impl Run<'_> {
+    /// Light vectors of all texels, where a pass has them.
+    pub(crate) fn vectors(&mut self, pass: &Pass) -> Option<Vec<Rgb>> {
+        let texels = self.floats(pass, "light_vector")?;
+        Some(texels.chunks_exact(4).map(rgb).collect())
+    }
+}
 
 /// From the device's own sun, added to what is there.
 pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
@@ -33,16 +41,36 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let (up, along) = sun.elevation_rad.sin_cos();
         glam::DVec3::new(cos * along, sin * along, up)
     };
+    let vectors = (constant(pass, "has_vector") == 1).then(|| run.vectors(pass).expect("read"));
     let mut pairs = sun_arriving(run, pass, &sun, towards);
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.phong_specular(i);
         let view = view_from(&heights, eye_m, i);
-        let to_mirror = mirrored(normal, view).dot(towards);
-        let light = specular_reference::specular_on((normal, view), &sun, phong, sums[i].into());
-        let tolerance =
-            device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards))
-                + disc_rings(phong.exponent.into(), &sun, to_mirror);
+        let vector = vectors.as_ref().map(|vectors| vectors[i]);
+        let magnitude = vector.map_or(1.0, glam::DVec3::length);
+        // Either branch.
+        if (magnitude - WHOLE).abs() <= 8.0 * EPSILON {
+            continue;
+        }
+        let light =
+            specular_reference::specular_on((normal, view), &sun, phong, (sums[i].into(), vector));
+        let n = phong.exponent.into();
+        let tolerance = match vector.filter(|_| magnitude < WHOLE) {
+            // Middle and axes err by 16 ε, 64 ε of a radius where the middles nearly agree. Axes of up to 1.05 radii: of the
+            // rings' error, which grows with the eighth power at most, 1.5 times.
+            Some(vector) => {
+                let to_mirror = mirrored(normal, view).dot(vector.normalize_or_zero());
+                magnitude
+                    * (device_sun_specular(n, error.normal() + 80.0 * EPSILON, 1.0)
+                        + 1.5 * disc_rings(n, &sun, to_mirror))
+            }
+            None => {
+                let to_mirror = mirrored(normal, view).dot(towards);
+                device_sun_specular(n, error.normal(), normal.dot(towards))
+                    + disc_rings(n, &sun, to_mirror)
+            }
+        };
         for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;

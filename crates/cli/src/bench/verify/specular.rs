@@ -6,7 +6,7 @@
 mod keys;
 mod spheres;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use ridgelight::Result;
@@ -19,7 +19,7 @@ use ridgelight_cpu::harmonics::Harmonics;
 use ridgelight_cpu::light::{Receiver, Site};
 use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sun_specular::specular_on;
+use ridgelight_cpu::sun_specular::{WHOLE, specular_on};
 use ridgelight_cpu::tolerance::{
     EPSILON, Land, ShadeError, device_resolved, device_sun_specular, disc_rings,
 };
@@ -236,7 +236,8 @@ fn wanted_of(
 }
 
 /// Specular light of a sun that gives `light` to ground of albedo ½, and its tolerance. That light
-/// is rounded three times, and specular light is proportional to it.
+/// is rounded three times, and specular light is proportional to it. Which part of a disc is visible is not known here: where
+/// it is not the whole one, specular light is anything up to the lobe's largest value over the disc.
 fn of_sun(
     scene: &Scene,
     sun: &Sun,
@@ -247,19 +248,27 @@ fn of_sun(
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
-    let reflected = irradiance * specular_on((place.normal, DVec3::Z), sun, phong, sum);
+    let reflected = irradiance * specular_on((place.normal, DVec3::Z), sun, phong, (sum, None));
     let (field, border) = (&scene.field, scene.surface.border);
     let at = [place.index / field.cols(), place.index % field.cols()];
     let (sin, cos) = sun.elevation_rad.sin_cos();
     let towards = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
     let turned = Land::normal_at(field, border, at);
     let facing = place.normal.dot(towards);
-    let exponent = phong.exponent.into();
+    let exponent = f64::from(phong.exponent);
     let to_mirror = mirrored(place.normal, DVec3::Z).dot(towards);
     let off = device_sun_specular(exponent, turned, facing) + disc_rings(exponent, sun, to_mirror);
     // A hidden sun has no specular light.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
-    [reflected, irradiance * off + 6.0 * EPSILON * reflected]
+    let visible = PI * sum / facing.max(1e-9);
+    let part = if !sun.is_point() && visible < WHOLE {
+        let nearest = (to_mirror.clamp(-1.0, 1.0).acos() - 0.5 * sun.diameter_rad).max(0.0);
+        let largest = (exponent + 1.0) / TAU * nearest.cos().max(0.0).powf(exponent);
+        visible.max(0.0) * f64::from(phong.scale) * largest
+    } else {
+        0.0
+    };
+    [reflected, irradiance * (off + part) + 6.0 * EPSILON * reflected]
 }
 
 #[cfg(test)]
