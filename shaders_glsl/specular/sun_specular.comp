@@ -104,8 +104,10 @@ float disc_density(vec3 mirror, float n, Ellipse part) {
             vec3 a = across * (turn.x * part.along + turn.y * part.across);
             vec3 b = across * (turn.x * part.across - turn.y * part.along);
             // As far below the tangent plane as directions of this angle are.
-            vec3 apart_a = (part.middle - mirror) - (h * dot(turn * turn, squared)) * part.middle;
-            vec3 apart_b = (part.middle - mirror) - (h * dot(turn * turn, squared.yx)) * part.middle;
+            vec2 turn2 = turn * turn;
+            vec2 depth = HAS_VECTOR ? h * vec2(dot(turn2, squared), dot(turn2, squared.yx)) : vec2(h);
+            vec3 apart_a = (part.middle - mirror) - depth.x * part.middle;
+            vec3 apart_b = (part.middle - mirror) - depth.y * part.middle;
             ring += phong_lobe(apart_a + a, n) + phong_lobe(apart_a - a, n) + phong_lobe(apart_b + b, n) + phong_lobe(apart_b - b, n);
         }
         sum += WEIGHTS[rings - 1 + i] * ring / float(4 * rings);
