@@ -39,7 +39,8 @@ settings! {
 
         /// SH order, 2 to 6; stores order^2 coefficients per texel
         ///
-        /// Lower blurs the light; higher takes more time and memory. With `basis sh` or `light_basis sh`.
+        /// Lower blurs the light; higher takes more time and memory. With `basis sh` or `light_basis sh`, and for
+        /// specular with bounces.
         Advanced "sh_order" sh_order: u32 = 4, Values::Whole(2..=6);
 
         /// Cells between the lines of a sweep
