@@ -52,14 +52,14 @@ layout(push_constant) uniform BounceMarchPush {
 const int FOURS = (ORDER * ORDER + 3) / 4;
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
-// Visibility above an elevation, in this azimuth; 0 between uses.
+// SH series of the visibility above an elevation in this azimuth; all 0 between uses.
 #define VALUE float
 float series[36];
 float turn[11];
 #include "sh/visible.glsl"
 #include "sh/turn.glsl"
 
-// Calls a function for each layer of four coefficients. Not a loop: llvmpipe counts the turns of all loops.
+// Calls a function for each layer of four coefficients. Unrolled: llvmpipe ends all loops together after 65,535 iterations.
 #define EACH_FOUR(f) \
     if (FOURS > 0) { f(0); } \
     if (FOURS > 1) { f(1); } \
@@ -157,7 +157,7 @@ void add_towards(int i) {
     corners_of[3] += part_towards(corner_texels[3], i, y);
 }
 
-// Towards the grid point, from a direction of its slice.
+// Finds the corners' exit radiance towards the grid point; `direction` points from there to the surface, within the slice.
 void find_corners(vec2 direction) {
     if (VECTORS) {
         vec3 e = vec3(azimuth * direction.x, direction.y);
@@ -189,7 +189,7 @@ float share_at(vec2 begin, vec2 end, vec2 direction) {
     return clamp(under / min(under - over, -1e-30), 0.0, 1.0);
 }
 
-// Adds a piece: the part from `reached` up to its end, if that is higher. `place` and `advance` give its start in the
+// Adds a piece, if `on`: llvmpipe runs a branch for all lanes. It is the part from `reached` up to its end, if that is higher. `place` and `advance` give its start in the
 // cell and its direction through it.
 void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance, bool on) {
     float slope = end.y / max(end.x, 1e-30);
@@ -207,15 +207,15 @@ void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance, bool on) {
     float weight_after = max(facing_of(facing, after), 0.0) * after.x;
     float both = max(weight_before + weight_after, 1e-30);
     float share = (weight_before * share_at(begin, end, before) + weight_after * share_at(begin, end, after)) / both;
-    if (VECTORS) {
+    if (VECTORS && rises) {
         find_corners(middle);
     }
-    // Clamped against rounding; series ring.
+    // Clamped at 0: rounding, and ringing of SH series, can make radiance negative.
     vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
     float counts = rises ? weight : 0.0;
     indirect += counts * radiance;
-    if (ORDER > 0) {
-        add_arriving(rises ? radiance - last_radiance : vec3(0.0));
+    if (ORDER > 0 && rises) {
+        add_arriving(radiance - last_radiance);
     }
     last_radiance = rises ? radiance : last_radiance;
     reached = rises ? slope : reached;

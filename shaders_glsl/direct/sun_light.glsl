@@ -25,7 +25,7 @@ vec4 sun_light(Azimuth azimuth, vec4 east, vec4 north, vec4 up, vec4 lowest, uin
 }
 
 // Adds the part of a sun's chord above `lowest` to the light vectors of four grid points: directions times irradiance (Gershun 1939).
-// All of a sun of irradiance 1 gives its direction.
+// For a wholly visible sun of irradiance 1 the sum is the unit vector towards the sun.
 void add_vector(inout vec4 east, inout vec4 north, inout vec4 up, Azimuth azimuth, vec4 lowest, bvec4 lit) {
     Moments above = elevation_moments(max(lowest, azimuth.low_slope));
     Moments top = elevation_moments(vec4(azimuth.high_slope));

@@ -1,7 +1,7 @@
 // Computes: Phong specular reflection of a sun towards the view, at every grid point: the mean of the lobe over the sun's
 // disc, times the sun's visible fraction. That fraction is the sun's diffuse light over its
-// unoccluded diffuse light. With a light vector, the visible part of a disc that is not wholly visible has the vector's magnitude, and
-// its middle is the vector's direction. Where another bounce follows, also the incident light of the sun as a series, all of it
+// unoccluded diffuse light. With a light vector, a partly hidden disc has the vector's magnitude as its visible share and
+// the vector's direction as its centre. Where another bounce follows, also the incident light of the sun as a series, all of it
 // from its centre.
 // Reads: lane_heights, sun_sum, light_vector, phong_map.
 // Reads and writes: specular_sum (exit radiance, RGB), arriving (four coefficients per layer, channel after channel).
@@ -49,7 +49,7 @@ layout(push_constant) uniform SunSpecularPush {
 const float NODES[15] = float[](0.5, 0.2113248654, 0.7886751346, 0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558,
                                 0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050,
                                 0.8983332387, 0.9801449282);
-// Above it a sun is wholly visible.
+// A light vector of this magnitude or more counts as a wholly visible sun.
 const float WHOLE = 0.999;
 const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0506142681,
                                   0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172,
@@ -62,8 +62,9 @@ struct Ellipse {
     vec3 across;
 };
 
-// The visible part of the sun, from its light vector: the segment that a straight edge leaves. Its middle lies c radii from the
-// sun's; its second moments are those of an ellipse whose half axes are 1 - c, to 0.05, and sqrt((1 - c) (1 + 1.7 c)), to 0.01.
+// Visible part of the sun, from its light vector, as the segment left by a straight edge. The segment's centre is c radii from
+// the sun's. Half axes of the ellipse with nearly its second moments: 1 - c, with an error of 0.05 radii at most, and
+// sqrt((1 - c) (1 + 1.7 c)), with one of 0.01.
 Ellipse visible_part(vec3 vector, float share) {
     vec3 middle = vector / max(share, 1e-30);
     float radius = sqrt(level.w * (2.0 - level.w));
@@ -71,12 +72,14 @@ Ellipse visible_part(vec3 vector, float share) {
     apart -= dot(apart, middle) * middle;
     float off = length(apart);
     float c = min(off / radius, 1.0);
-    // Where the middles nearly agree the axes do, too.
+    // Of a small share, rounding may move the centre out of the disc.
+    middle = off > radius ? normalize(towards.xyz + (radius / off) * apart) : middle;
+    // Where the centres nearly agree, both half axes have nearly the same length: any direction will do.
     vec3 along = off > 1e-4 * radius ? apart / off : level.xyz;
     return Ellipse(middle, (1.0 - c) * along, sqrt((1.0 - c) * (1.0 + 1.7 * c)) * cross(middle, along));
 }
 
-// Integral of the lobe of exponent n over the sun's disc or an ellipse of it, for irradiance 1. Each ring has a share of the solid angle that is
+// Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1. Each ring has a share of the solid angle that is
 // its weight, and four directions for each ring. The error that was measured is 2.5e-4 of the lobe's peak. Where
 // n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that. At 90 degrees from the mirror
 // direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings.
@@ -103,7 +106,7 @@ float disc_density(vec3 mirror, float n, Ellipse part) {
             vec2 turn = vec2(cosine(angle), sine(angle));
             vec3 a = across * (turn.x * part.along + turn.y * part.across);
             vec3 b = across * (turn.x * part.across - turn.y * part.along);
-            // As far below the tangent plane as directions of this angle are.
+            // Depth of this direction below the tangent plane at the ellipse's centre.
             vec2 turn2 = turn * turn;
             vec2 depth = HAS_VECTOR ? h * vec2(dot(turn2, squared), dot(turn2, squared.yx)) : vec2(h);
             vec3 apart_a = (part.middle - mirror) - depth.x * part.middle;
@@ -179,7 +182,8 @@ void main() {
             if (magnitude < WHOLE) {
                 share = magnitude;
                 part = visible_part(vector, magnitude);
-                reaches = true;
+                // Below it, directions are rounding.
+                reaches = magnitude > 1e-6;
             }
         }
         float density = reaches ? of.y * disc_density(mirror, of.x, part) : 0.0;

@@ -24,7 +24,7 @@ pub(crate) fn plan(
         _ => None,
     };
     let layers = specular.map_or(0, |specular| u64::from(specular.layers()));
-    // Four texels of every layer where surface is visible: at most steps it is not.
+    // A step that adds a visible piece reads four texels of every layer. Most steps add none: one texel per layer is counted.
     let each = blocks.levels.lookups() * if vectors.is_some() { 1 + layers } else { 1 };
     let mut bound = vec![
         ("cells", cells),

@@ -27,8 +27,9 @@ impl SpecularTables {
     ///
     /// Peaks lie a quarter of the lobe's deviation apart, 1/√n radians; at least 192 of them resolve the edges of an
     /// environment's brightest spots, whatever the lobe is. There are at most 1024: from n = 2,950 on they lie farther apart.
-    /// Those of whole slices lie a sixteenth apart, up to 2,048 of them: the unoccluded reflection is linear between two, which
-    /// errs by up to h²/8 of the lobe's peak, h apart in deviations: 1/2,048 instead of 1/128.
+    /// Those of whole slices lie a sixteenth apart. The unoccluded reflection is linear between two, which errs by up to h²/8 of the
+    /// lobe's peak, h apart in deviations: 1/2,048 instead of 1/128. There are at most 2,048: from n = 738 on, 415 with an open
+    /// border, they lie farther apart.
     pub(crate) fn make(
         builder: &mut Builder,
         name: &str,

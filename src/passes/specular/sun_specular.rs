@@ -37,7 +37,12 @@ pub(crate) fn plan(
             has_vector: light_vector.is_some(),
         },
         name,
-        "the mean of the Phong lobe over the sun's disc, times its visible part",
+        match light_vector {
+            Some(_) => {
+                "the mean of the Phong lobe over the visible part of the sun, times its share"
+            }
+            None => "the mean of the Phong lobe over the sun's disc, times its visible part",
+        },
         shaders::SUN_SPECULAR.groups([axis.steps, axis.lanes.div_ceil(4), 1]),
         &shaders::SunSpecularPush {
             cols: cols as i32,
@@ -56,9 +61,8 @@ pub(crate) fn plan(
     );
 }
 
-/// Whether lobes change across a sun so much that it matters which part of it is visible: n r² above 0.01. Without its light vector
-/// specular of exponent 20 under a sun 5 degrees wide, 20 high, errs by 2.8 % on steep ground, that of exponent 100 under a sun 1 degree
-/// wide by 0.03 %.
+/// Whether the lobe varies enough over the sun that it matters which part is visible: n r² > 0.01. Without the light vector the
+/// error on steep ground is about 3 % at exponent 20 under a sun 5° wide, 20° high, and 0.03 % at exponent 100 under one 1° wide.
 pub(crate) fn needs_vector(specular: &Specular, sun: &Sun) -> bool {
     let radius = 0.5 * sun.diameter_rad;
     !sun.is_point() && f64::from(specular.largest().exponent) * radius * radius > 0.01

@@ -82,7 +82,7 @@ fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
         Err(Error::setting(format!("`{name}` with `bounces` and specular"), found, expected))
     };
     if quality.bounces.engine == BounceEngine::Auto {
-        notes.push("bounce engine pyramid: specular needs exit radiance by direction; brute-force errs less, and takes longer".into());
+        notes.push("bounce engine pyramid: sweep keeps no exit radiance by direction, as specular needs; brute-force has a smaller error and takes longer".into());
         quality.bounces.engine = BounceEngine::Pyramid;
     }
     if quality.bounces.engine == BounceEngine::Sweep {

@@ -81,18 +81,18 @@ fn specular_of_a_bright_spot_is_the_phong_function() {
         }
         println!("{n}: {:.2e} of {:.2e}", worst / largest, bound / largest);
         assert!(worst <= bound, "{n}: {worst:e} of {bound:e}");
-        // The eye sees the spot's reflection.
+        // The spot's reflection lies within the field.
         let peak = RADIANCE * (n + 1.0) / TAU * width * height;
         assert!(largest > 0.5 * peak * ((row as f64 + 0.5) * height).sin(), "{n}: {largest}");
     }
 }
 
-/// Level ground mirrors a sun that rises behind a long wall: the lobe's integral over what is above the wall. By every method, an eye
-/// sees the sun mirrored, or a place beside it.
+/// Level ground mirrors a sun that rises behind a long wall: the lobe's integral over what is above the wall. The mirror
+/// direction of the eye is at the sun or a few degrees beside it.
 ///
-/// Of the largest value: a segment's squared widths differ from those taken by 0.025 r² and 0.01 r², half of that for a second
-/// derivative of n; its third moment is 0.1 r³ at most, a sixth of that for a third derivative of 1.38 n^1.5; chords h = 1/32 of a radius
-/// apart err by h², and a thousandth of the disc may be hidden unnoticed.
+/// Errors, of the largest value: the ellipse's squared widths are off by 0.025 r² and 0.01 r². Half of each, times the second
+/// derivative n, bounds that error. The third moment is 0.1 r³ at most. A sixth of it, times the third derivative of at most 1.38 n^1.5,
+/// bounds the next. Chords h = 1/32 of a radius apart err by h². Up to a thousandth of the disc may be hidden and go undetected.
 #[test]
 fn a_sun_behind_a_wall_is_reflected_by_its_visible_part() {
     const COLS: usize = 40;
@@ -156,7 +156,7 @@ fn a_sun_behind_a_wall_is_reflected_by_its_visible_part() {
         let wide = n * radius * radius;
         let shape = 0.5 * (0.025 + 0.01) * wide + 1.38 / 6.0 * 0.1 * wide.powf(1.5);
         let bound = (n + 1.0) / TAU * (shape + 1.0 / 1024.0 + 1e-3);
-        // Flat ground, whose normal the wall does not turn.
+        // Columns whose normal the wall does not affect.
         for c in 1..WALL - 2 {
             let [want, share] = visible((WALL - c) as f64);
             let got = f64::from(lit.values[(8 * COLS + c) * lit.channels]);
@@ -172,6 +172,8 @@ fn a_sun_behind_a_wall_is_reflected_by_its_visible_part() {
             }
         }
     }
-    println!("{cut} are cut, of which the mean over the disc is wrong for {wrong}");
+    println!(
+        "the wall partly hides the sun in {cut} columns; the mean over the whole disc is out of bounds in {wrong}"
+    );
     assert!(cut > 20 && wrong > 10, "{cut} {wrong}");
 }

@@ -28,7 +28,7 @@ pub fn visible_intervals_along(
     intervals_of(oracle, azimuths, place, |at, _| exit[at])
 }
 
-/// The same of exit radiance by direction, as series of `order`.
+/// As [`visible_intervals_along`], with exit radiance by direction: SH series of `order`.
 pub fn visible_series_along(
     oracle: &Oracle,
     (order, exit): (usize, &[Series]),
@@ -41,7 +41,8 @@ pub fn visible_series_along(
     })
 }
 
-/// Of the radiance that `leaving` a grid point goes in a direction: for each interval that to its middle.
+/// Visible intervals along all azimuths. `leaving` gives a grid point's exit radiance in a direction; each interval takes the
+/// direction from its middle to the receiver.
 fn intervals_of(
     oracle: &Oracle,
     azimuths: u32,
@@ -73,7 +74,7 @@ fn intervals_of(
                 high_rad,
                 weight: slice.light(interval.low_rad, interval.high_rad).max(0.0),
                 facing: slice.at(high_rad) * high_rad.cos(),
-                // Series ring.
+                // SH series ring.
                 radiance: [0, 1, 2].map(|c| mean(c).max(0.0)),
                 spread: [0, 1, 2].map(|c| {
                     of(c).iter().fold(f64::MIN, |m, l| m.max(*l))

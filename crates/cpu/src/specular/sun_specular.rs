@@ -18,6 +18,10 @@ pub fn specular_on(
 ) -> f64 {
     let [exponent, scale] = [phong.exponent, phong.scale].map(f64::from);
     if let Some(vector) = vector.filter(|vector| vector.length() < WHOLE) {
+        // Below it, directions are rounding.
+        if vector.length() <= 1e-6 {
+            return 0.0;
+        }
         let part = visible_part(vector, sun);
         let mirror = mirrored(normal, view);
         return scale * vector.length() * part_density(mirror, sun, exponent, &part);
@@ -48,12 +52,17 @@ pub struct Ellipse {
     pub half_axes: [DVec3; 2],
 }
 
-/// The visible part of a sun of a light vector: the segment that a straight edge leaves. Its middle lies c radii from the sun's; its
-/// second moments are those of an ellipse whose half axes are 1 - c, to 0.05, and √((1 - c) (1 + 1.7 c)), to 0.01.
+/// Visible part of a sun, from its light vector, as the segment left by a straight edge. The segment's centre is c radii from the
+/// sun's. Half axes of the ellipse with nearly its second moments: 1 - c, with an error of 0.05 radii at most, and
+/// √((1 - c) (1 + 1.7 c)), with one of 0.01.
 pub fn visible_part(vector: DVec3, sun: &Sun) -> Ellipse {
-    let (middle, radius) = (vector.normalize_or_zero(), (0.5 * sun.diameter_rad).sin());
+    let (mut middle, radius) = (vector.normalize_or_zero(), (0.5 * sun.diameter_rad).sin());
     let apart = (middle - towards(sun)).reject_from(middle.try_normalize().unwrap_or(DVec3::Z));
     let c = (apart.length() / radius).min(1.0);
+    // Of a small share, rounding may move the centre out of the disc.
+    if apart.length() > radius {
+        middle = (towards(sun) + radius * apart.normalize()).normalize();
+    }
     let (sin, cos) = sun.azimuth_rad.sin_cos();
     let along = match apart.length() > 1e-4 * radius {
         true => apart.normalize(),
@@ -63,7 +72,7 @@ pub fn visible_part(vector: DVec3, sun: &Sun) -> Ellipse {
     Ellipse { middle, half_axes: [(1.0 - c) * along, across * middle.cross(along)] }
 }
 
-/// The same over an ellipse of the disc.
+/// As [`disc_density`], over an ellipse within the disc.
 fn part_density(mirror: DVec3, sun: &Sun, exponent: f64, part: &Ellipse) -> f64 {
     let radius = if sun.is_point() { 0.0 } else { 0.5 * sun.diameter_rad };
     let n = exponent.min(WIDEST / (radius * radius));

@@ -24,8 +24,8 @@ pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
     (4.0 * PI).sqrt() * (device_sh_specular(order, normal_error) + (directions + 4.0) * EPSILON)
 }
 
-/// A coefficient of what arrives by `specular_gather` or `bounce_march`, from all visible intervals of a CPU reference, each with its error there, of
-/// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
+/// Error of a coefficient of incident light by `specular_gather` or `bounce_march`. `all` are the CPU reference's visible intervals;
+/// `error` gives each one's error. The magnitudes of the surface's exit coefficients sum to `of.brightest` at most.
 ///
 /// An end closes the contribution of one place and opens the next one: twice its error times `brightest`, with Y_lm 1 at
 /// most; the first is the own plane, which turns with the normal. Radiance errs by itself, changes by n a radian of

@@ -111,7 +111,7 @@ pub fn approximates_specular(scene: &Scene, bounces: u32) -> bool {
 
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
 /// without an environment. A map of Phong specular, and bounces of it, are lit by harmonics only;
-/// its bounces use pyramids only, at every texel.
+/// its bounces are measured with pyramids only, at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     // No setting changes anything about lights of radiance 0.
     let (lights, has_specular) = (&scene.lights.lit(), has_specular(scene));

@@ -30,9 +30,8 @@ const MODES: [&str; 17] = [
     "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (noise \
      {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
     "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;32;slices@4}, {20;32;slices@4}, {1000;32;slices@4} %",
-    "its 2 bounces, exponent 5, 20 | approximate | gloss | {0.4;0.5;5;pyramid;vector;4@8}, \
-     {0.4;0.5;20;pyramid;vector;4@8} %; brute force {0.4;0.5;5;brute-force;vector;6@8}, \
-     {0.4;0.5;20;brute-force;vector;6@8} %",
+    "with 2 bounces, exponent 5 | approximate | gloss | {0.4;0.5;5;pyramid;vector;4@8} % of all light; brute force \
+     {0.4;0.5;5;brute-force;vector;6@8} %",
     "edit of a rectangle | exact | edits | the same bits as a whole frame",
 ];
 

@@ -236,8 +236,8 @@ fn wanted_of(
 }
 
 /// Specular light of a sun that gives `light` to ground of albedo ½, and its tolerance. That light
-/// is rounded three times, and specular light is proportional to it. Which part of a disc is visible is not known here: where
-/// it is not the whole one, specular light is anything up to the lobe's largest value over the disc.
+/// is rounded three times, and specular light is proportional to it. This check does not know which part of the disc is
+/// visible. Where the disc is partly hidden, the tolerance covers any value up to the lobe's maximum over it.
 fn of_sun(
     scene: &Scene,
     sun: &Sun,
@@ -260,14 +260,20 @@ fn of_sun(
     let off = device_sun_specular(exponent, turned, facing) + disc_rings(exponent, sun, to_mirror);
     // A hidden sun has no specular light.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
+    let radius = 0.5 * sun.diameter_rad;
+    let largest = scene.surface.specular.as_ref().map_or(0.0, |s| f64::from(s.largest().exponent));
+    // As the planner decides.
+    let has_vector = !sun.is_point() && largest * radius * radius > 0.01;
     let visible = PI * sum / facing.max(1e-9);
-    let part = if !sun.is_point() && visible < WHOLE {
-        let nearest = (to_mirror.clamp(-1.0, 1.0).acos() - 0.5 * sun.diameter_rad).max(0.0);
-        let largest = (exponent + 1.0) / TAU * nearest.cos().max(0.0).powf(exponent);
-        visible.max(0.0) * f64::from(phong.scale) * largest
-    } else {
-        0.0
+    let share = match facing > radius {
+        // Of cosine and of solid angle: the same to 0.1 % where the whole disc is visible.
+        true if visible >= WHOLE => 2.0 * (1.0 - WHOLE),
+        true => visible.clamp(0.0, 1.0),
+        false => 1.0,
     };
+    let nearest = (to_mirror.clamp(-1.0, 1.0).acos() - radius).max(0.0);
+    let peak = (exponent + 1.0) / TAU * nearest.cos().max(0.0).powf(exponent);
+    let part = if has_vector && sum > 0.0 { share * f64::from(phong.scale) * peak } else { 0.0 };
     [reflected, irradiance * (off + part) + 6.0 * EPSILON * reflected]
 }
 
