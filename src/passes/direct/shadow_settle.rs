@@ -20,8 +20,10 @@ pub(crate) fn plan(
     (field, border): (&HeightField, Border),
     batch: &Batch,
     (part, shape): (&str, Shape),
-    [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
-    light_vector: Option<ResourceId>,
+    ([lane_heights, azimuths, lattice, sun_sum], light_vector): (
+        [ResourceId; 4],
+        Option<ResourceId>,
+    ),
 ) {
     let axis = batch.axis;
     let mut bound = vec![

@@ -11,8 +11,10 @@ pub(crate) fn plan(
     (border, cell_m): (Border, [f64; 2]),
     batch: &Batch,
     (part, shape): (&str, Shape),
-    [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
-    light_vector: Option<ResourceId>,
+    ([lane_heights, azimuths, lattice, sun_sum], light_vector): (
+        [ResourceId; 4],
+        Option<ResourceId>,
+    ),
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();

@@ -227,31 +227,15 @@ impl Drawing<'_> {
                     let field = &self.scene.field;
                     let of = (part.as_str(), shape);
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
-                    let ground = (border, cell_m);
-                    passes::shadow_shade::plan(
-                        builder,
-                        shadows,
-                        ground,
-                        batch,
-                        of,
-                        ids,
-                        light_vector,
-                    );
+                    let ids = (ids, light_vector);
+                    passes::shadow_shade::plan(builder, shadows, (border, cell_m), batch, of, ids);
                     let lit = (field, border);
                     let walked = *walked.get_or_insert_with(|| {
                         let (aim, heights) = ((self.active.aim(i), cell_m), sweeping.heights());
                         shadows.plan_maxima(builder, (&name, i), aim, heights)
                     });
                     let shadows = (shadows, walked);
-                    passes::shadow_settle::plan(
-                        builder,
-                        shadows,
-                        lit,
-                        batch,
-                        of,
-                        ids,
-                        light_vector,
-                    );
+                    passes::shadow_settle::plan(builder, shadows, lit, batch, of, ids);
                     continue;
                 }
                 if self.edited.is_none() {

@@ -393,6 +393,29 @@ mod tests {
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
     }
 
+    /// Only a sun across which the lobe varies has a light vector: n r² > 0.01.
+    #[test]
+    fn only_suns_that_are_wide_for_the_lobe_have_a_light_vector() {
+        let has_vector = |diameter_rad: f64, exponent: f32| {
+            let sun = Sun { diameter_rad, ..sun().suns[0] };
+            let lights = Lights { suns: vec![sun], ..Lights::default() };
+            let phong = PhongSpecular { exponent, scale: 0.5 };
+            let plan = plan_of(lights, Basis::Auto, phong).expect("a plan");
+            let is_read = plan.passes.iter().any(|pass| {
+                let place = pass.shader.bindings.iter().position(|b| b.name == "light_vector");
+                pass.name() == "sun_specular" && place.is_some_and(|i| pass.bindings[i].is_some())
+            });
+            assert_eq!(plan.find("light_vector").is_some(), is_read);
+            is_read
+        };
+        for (radius_rad, exponent) in [(0.04_f64, 6.2), (0.01, 99.0), (0.0, 1e4)] {
+            assert!(!has_vector(2.0 * radius_rad, exponent), "{radius_rad} {exponent}");
+        }
+        for (radius_rad, exponent) in [(0.04_f64, 6.3), (0.01, 101.0)] {
+            assert!(has_vector(2.0 * radius_rad, exponent), "{radius_rad} {exponent}");
+        }
+    }
+
     /// A light type without specular is refused by name, and one without series is exact.
     #[test]
     fn a_light_type_says_what_supports_it() {

@@ -133,6 +133,44 @@ mod tests {
     use crate::tolerance::disc_rings;
     use ridgelight::basis::legendre::{legendre, value};
 
+    /// The part of a disc that a straight edge leaves has the stated centre and nearly the ellipse's squared widths, which are a
+    /// quarter of its squared half axes: to 0.025 and 0.01 r². A whole disc in its place would be wrong by more.
+    #[test]
+    fn a_cut_disc_has_nearly_the_moments_of_its_ellipse() {
+        let radius = 0.02;
+        let sun = Sun {
+            azimuth_rad: 0.3,
+            elevation_rad: 0.5,
+            diameter_rad: 2.0 * radius,
+            irradiance: [1.0; 3],
+        };
+        let above = towards(&sun).cross(DVec3::new(-(0.3_f64.sin()), 0.3_f64.cos(), 0.0));
+        let mut whole_is_wrong = false;
+        for edge in -19..19 {
+            // Strips across, in radii.
+            let (mut area, mut first, mut along, mut across) = (0.0, 0.0, 0.0, 0.0);
+            for k in 0..4000 {
+                let y = (f64::from(k) + 0.5) / 2000.0 - 1.0;
+                if y > f64::from(edge) / 20.0 {
+                    let half = (1.0 - y * y).sqrt();
+                    area += half;
+                    first += half * y;
+                    along += half * y * y;
+                    across += half * (1.0 - y * y) / 3.0;
+                }
+            }
+            let centre = first / area;
+            let [along, across] = [along / area - centre * centre, across / area];
+            let part = visible_part(towards(&sun) + centre * radius * above, &sun);
+            let [a, b] = part.half_axes.map(|axis| 0.25 * axis.length_squared());
+            assert!((a - along).abs() < 0.025, "{centre}: {a} for {along}");
+            assert!((b - across).abs() < 0.01, "{centre}: {b} for {across}");
+            assert!(part.half_axes[0].cross(above).length() < 0.05, "{centre}: turned");
+            whole_is_wrong |= (0.25 - along).abs() > 0.025 && (0.25 - across).abs() > 0.01;
+        }
+        assert!(whole_is_wrong);
+    }
+
     /// Nodes and weights of Gauss and Legendre on [0..1].
     fn gauss(count: usize) -> Vec<[f64; 2]> {
         if count == 0 {
