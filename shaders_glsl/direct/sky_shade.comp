@@ -1,8 +1,9 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches; and the light that the horizons hide from a Phong lobe.
-// Reads: lane_heights, lane_buffer, azimuths, lattice, env_tables, specular_tables, dirty_texels, edit_list.
+// Reads: lane_heights, lane_buffer, azimuths, lattice, env_tables, specular_tables, phong_map, constants, dirty_texels,
+// edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
-// RGB), blocked_sum (radiance for scale 1, RGB).
+// RGB), blocked_sum (radiance for scale 1, RGB), blocked_above (of a map: for the level of exponents above).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -28,6 +29,8 @@ layout(constant_id = 8) const bool SPECULAR_IS_SHARED = false;
 
 #define LANE_BUFFER
 layout(constant_id = 9) const bool READS_LANE_BUFFER = false;
+// The exponent varies; see levels.glsl.
+layout(constant_id = 10) const bool SPECULAR_IS_MAP = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 11) readonly buffer LaneBuffer { float lane_buffer[]; };
@@ -47,6 +50,10 @@ layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 // x: elevation of the lobe's peak, y: elevation, layer: azimuth.
 layout(binding = 9, rgba32f) uniform readonly image2DArray specular_tables;
 layout(binding = 10, rgba32f) uniform image2D blocked_sum;
+layout(binding = 13, rgba32f) uniform image2D blocked_above;
+// Phong exponent and scale.
+layout(binding = 14) uniform texture2D phong_map;
+layout(binding = 15) uniform textureBuffer constants;
 
 // Sums of the four grid points, and their normals.
 vec4 sky;
@@ -142,15 +149,18 @@ void main() {
     env_red = vec4(0.0);
     env_green = vec4(0.0);
     env_blue = vec4(0.0);
-    blocked_red = vec4(0.0);
-    blocked_green = vec4(0.0);
-    blocked_blue = vec4(0.0);
+    blocked[0] = Blocked(vec4(0.0), vec4(0.0), vec4(0.0));
+    blocked[1] = blocked[0];
     if (HAS_SPECULAR) {
         vec4 lane_at = vec4(lane, lane + 1, lane + 2, lane + 3);
         vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
         vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
         mirror = mirrored(normal_east, normal_north, normal_up, column * cell_x_m, (float(rows - 1) - row) * cell_y_m,
                           q.here.four, eye_m);
+        if (SPECULAR_IS_MAP) {
+            ivec4 across = min(lane + ivec4(0, 1, 2, 3), lanes - 1);
+            find_specular(MARCHES_ROWS ? across : ivec4(march), MARCHES_ROWS ? ivec4(march) : across);
+        }
     }
     if (clears == 0u) {
         for (int k = 0; k < 4; k++) {
@@ -166,9 +176,15 @@ void main() {
             }
             if (HAS_SPECULAR) {
                 vec3 sum = imageLoad(blocked_sum, at).rgb;
-                blocked_red[k] = sum.r;
-                blocked_green[k] = sum.g;
-                blocked_blue[k] = sum.b;
+                blocked[0].red[k] = sum.r;
+                blocked[0].green[k] = sum.g;
+                blocked[0].blue[k] = sum.b;
+            }
+            if (HAS_SPECULAR && SPECULAR_IS_MAP) {
+                vec3 sum = imageLoad(blocked_above, at).rgb;
+                blocked[1].red[k] = sum.r;
+                blocked[1].green[k] = sum.g;
+                blocked[1].blue[k] = sum.b;
             }
         }
     }
@@ -182,7 +198,10 @@ void main() {
             imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
         }
         if (HAS_SPECULAR && lit[k]) {
-            imageStore(blocked_sum, at, vec4(blocked_red[k], blocked_green[k], blocked_blue[k], 0.0));
+            imageStore(blocked_sum, at, vec4(blocked[0].red[k], blocked[0].green[k], blocked[0].blue[k], 0.0));
+        }
+        if (HAS_SPECULAR && SPECULAR_IS_MAP && lit[k]) {
+            imageStore(blocked_above, at, vec4(blocked[1].red[k], blocked[1].green[k], blocked[1].blue[k], 0.0));
         }
     }
 }

@@ -112,7 +112,7 @@ float specular_between(vec2 low, vec2 high) {
         vec2 middle = turned(axis, sum * inversesqrt(sum2));
         float c = phong_along * middle.x + phong_up * middle.y;
         float s = phong_along * middle.y - phong_up * middle.x;
-        float power = exp(-0.5 * phong_n * minus_log(vec4(min(s * s, 1.0))).x);
+        float power = exp(-0.5 * phong_n * minus_log(vec4(min(s * s, 1.0)), vec4(c * c)).x);
         return c > 0.0 ? (phong_n + 1.0) / (2.0 * PI) * power * middle.x * width : 0.0;
     }
     vec2 from = turned(axis, low);
@@ -269,10 +269,11 @@ vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 towards, float away, fl
     visible_specular = 0.0;
     if (HAS_SPECULAR) {
         float along = dot(mirror.xy, e);
-        float shorten = inversesqrt(max(along * along + mirror.z * mirror.z, 1e-30));
+        float within = along * along + mirror.z * mirror.z;
+        float shorten = inversesqrt(max(within, 1e-30));
         phong_along = along * shorten;
         phong_up = mirror.z * shorten;
-        phong_power = off_slice(phong_n, vec4(mirror.x * e.y - mirror.y * e.x)).x;
+        phong_power = off_slice(vec4(phong_n), vec4(mirror.x * e.y - mirror.y * e.x), vec4(within)).x;
     }
     march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), alive && reached < high_slope);
     vec2 visible_from = from_axis(reached);

@@ -6,12 +6,13 @@
 vec4 key_specular(float n, Azimuth azimuth, Mirrored mirror, vec4 lowest) {
     vec4 along = mirror.east * azimuth.cos_phi + mirror.north * azimuth.sin_phi;
     vec4 across = mirror.east * azimuth.sin_phi - mirror.north * azimuth.cos_phi;
-    vec4 power = off_slice(n, across);
+    vec4 within = along * along + mirror.up * mirror.up;
+    vec4 power = off_slice(vec4(n), across, within);
     // Farther away a lobe has less than 1e-7 of its peak.
     if (all(lessThan(power, vec4(1e-7)))) {
         return vec4(0.0);
     }
-    vec4 shorten = inversesqrt(max(along * along + mirror.up * mirror.up, vec4(1e-30)));
+    vec4 shorten = inversesqrt(max(within, vec4(1e-30)));
     along *= shorten;
     vec4 up = mirror.up * shorten;
     float high = azimuth.high_slope;

@@ -3,7 +3,8 @@
 // horizons are compared.
 // Reads: azimuths, specular_tables.
 // Writes: mirror_map (equirectangular: column 0 east, counter-clockwise; row 0 straight down, the last straight up). Where
-// the azimuths are equally spaced and have the same light, the map is periodic, and only its first period is stored.
+// the azimuths are equally spaced and have the same light, the map is periodic, and only its first period is stored. Maps of
+// several exponents lie one above the other.
 // One invocation is one direction.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -19,7 +20,11 @@ layout(binding = 2, rgba32f) uniform writeonly image2D mirror_map;
 
 layout(push_constant) uniform MirrorMapPush {
     int columns;        // of a whole turn, a multiple of 4
+    int stored;         // of those, the first period
     int height;
+    int first_row;      // of the map within the image
+    int first_peak;     // column of the table within the image
+    int peaks;
     int azimuth_count;
     int node;           // of the zenith
     float first_rad;    // peak 0
@@ -33,7 +38,7 @@ layout(push_constant) uniform MirrorMapPush {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= imageSize(mirror_map).x || at.y >= height) {
+    if (at.x >= stored || at.y >= height) {
         return;
     }
     // Sine and cosine of the azimuth from its quarter.
@@ -48,7 +53,7 @@ void main() {
     east_north *= flat_part;
     float up = sine(elevation);
     if (up < lowest_up) {
-        imageStore(mirror_map, at, vec4(0.0));
+        imageStore(mirror_map, at + ivec2(0, first_row), vec4(0.0));
         return;
     }
     // If the lobe does not reach the zenith, only azimuths near its own contribute.
@@ -62,8 +67,7 @@ void main() {
         count = min(int(2.0 * half_count) + 2, azimuth_count);
         first = uint(int(floor(nearest - half_count)) + 2 * azimuth_count);
     }
-    ivec3 size = imageSize(specular_tables);
-    bool is_shared = size.z == 1 && azimuth_count > 1;
+    bool is_shared = imageSize(specular_tables).z == 1 && azimuth_count > 1;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < count; i++) {
         uint k = (first + uint(i)) % uint(azimuth_count);
@@ -73,7 +77,7 @@ void main() {
         if (abs(across) > farthest || (along < 0.0 && farthest < flat_part)) {
             continue;
         }
-        float power = off_slice(exponent, vec4(across)).x;
+        float power = off_slice(vec4(exponent), vec4(across), vec4(along * along + up * up)).x;
         if (power < least) {
             continue;
         }
@@ -81,12 +85,13 @@ void main() {
         if (place < 0.0) {
             continue;
         }
-        int peak = clamp(int(place), 0, size.x - 2);
+        int peak = clamp(int(place), 0, peaks - 2);
         float t = clamp(place - float(peak), 0.0, 1.0);
         int layer = is_shared ? 0 : int(k);
-        vec3 low = imageLoad(specular_tables, ivec3(peak, node, layer)).rgb;
-        vec3 high = imageLoad(specular_tables, ivec3(peak + 1, node, layer)).rgb;
+        ivec3 of_peak = ivec3(first_peak + peak, node, layer);
+        vec3 low = imageLoad(specular_tables, of_peak).rgb;
+        vec3 high = imageLoad(specular_tables, of_peak + ivec3(1, 0, 0)).rgb;
         sum += power * (is_shared ? azimuth.wedge_rad : 1.0) * mix(low, high, t);
     }
-    imageStore(mirror_map, at, vec4(sum, 0.0));
+    imageStore(mirror_map, at + ivec2(0, first_row), vec4(sum, 0.0));
 }

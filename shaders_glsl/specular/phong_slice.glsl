@@ -3,12 +3,12 @@
 // With A = m.x cos phi + m.y sin phi and B = m.z, a direction of elevation w in the slice has e.m = A cos w + B sin w =
 // a cos(w - w0): the lobe peaks at the elevation w0, scaled by a^n, a^2 = A^2 + B^2 = 1 - p^2, p = m.x sin phi - m.y cos phi.
 
-// -ln(1 - m) for m in [0, 1]: 2 atanh(m / (2 - m)), a series to 1e-7 up to 1/2.
-vec4 minus_log(vec4 m) {
+// -ln(rest) for m = 1 - rest in [0, 1]: 2 atanh(m / (2 - m)), a series to 1e-7 up to 1/2.
+vec4 minus_log(vec4 m, vec4 rest) {
     vec4 z = m / (2.0 - m);
     vec4 s = z * z;
     vec4 series = 1.0 + s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * (1.0 / 9.0 + s * (1.0 / 11.0 + s / 13.0)))));
-    return mix(2.0 * z * series, -log(max(1.0 - m, 1e-30)), greaterThan(m, vec4(0.5)));
+    return mix(2.0 * z * series, -log(max(rest, 1e-30)), greaterThan(m, vec4(0.5)));
 }
 
 // Angle of (x, y), -pi to pi.
@@ -18,9 +18,9 @@ vec4 angle_of(vec4 x, vec4 y) {
     return mix(angle, -angle, lessThan(y, vec4(0.0)));
 }
 
-// a^n, for `across` = p.
-vec4 off_slice(float n, vec4 across) {
-    return exp(-0.5 * n * minus_log(min(across * across, vec4(1.0))));
+// a^n, for `across` = p and `within` = a^2.
+vec4 off_slice(vec4 n, vec4 across, vec4 within) {
+    return exp(-0.5 * n * minus_log(min(across * across, vec4(1.0)), within));
 }
 
 // Integral of cos^(n + 1) from 0 to u, for s = sin u and y2 = -ln cos^2 u. With q = n + 3/2 and y^2 = y2 it is
@@ -53,7 +53,9 @@ vec4 phong_integral(float n, vec4 along, vec4 up, vec4 cos_w, vec4 sin_w) {
     level_end = mix(vec4(-1.0), level_end, greaterThan(along, vec4(0.0)));
     end = mix(end, level_end, equal(up, vec4(0.0)));
     s = mix(s, end, lessThanEqual(c, vec4(0.0)));
-    vec4 y2 = minus_log(min(s * s, vec4(1.0)));
+    // cos^2 itself, not 1 - sin^2: near the lobe's end their difference is all rounding.
+    c = max(c, 0.0);
+    vec4 y2 = minus_log(min(s * s, vec4(1.0)), c * c);
     vec4 power = exp(-0.5 * (n + 1.0) * y2);
     return (1.0 / (2.0 * PI)) * ((n + 1.0) * along * cosine_integral(n, s, y2) + up * power);
 }

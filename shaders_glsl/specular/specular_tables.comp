@@ -22,6 +22,7 @@ layout(push_constant) uniform SpecularTablesPush {
     int height;       // rows of the environment from pole to pole
     int rows;         // those with light that can arrive
     int peaks;
+    int first_peak;   // column of peak 0: tables of several exponents lie side by side
     int nodes;        // elevations: with one, that of the zenith
     int layers;       // azimuths
     float bottom_rad; // the lowest elevation
@@ -82,7 +83,7 @@ void main() {
             row = max(row - (row_top <= elevation ? 1 : 0), 0);
         }
         for (int i = 0; i < 4 && peak + i < peaks; i++) {
-            imageStore(specular_tables, ivec3(peak + i, node, k), vec4(red[i], green[i], blue[i], 0.0));
+            imageStore(specular_tables, ivec3(first_peak + peak + i, node, k), vec4(red[i], green[i], blue[i], 0.0));
         }
     }
 }

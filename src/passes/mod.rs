@@ -59,6 +59,9 @@ impl shaders::ShadePush {
             exponent: 0.0,
             least_cosine: 0.0,
             relights: 0,
+            first_level: 0,
+            level_count: 0,
+            levels_per_log: 0.0,
         }
     }
 }

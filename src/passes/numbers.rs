@@ -12,6 +12,7 @@ use super::height_bounds;
 use super::line_blocks::LONGEST;
 use super::scatter_gather::Source;
 use super::sh_layout::Lit;
+use super::specular_tables::{LEVEL_TEXELS, SWEPT_EVERY};
 use super::sphere_sh_shade::WITHIN_CELLS;
 use super::sweep::{HullStorage, Sweep};
 use super::sweeping::LANE_BUFFER_PAD;
@@ -86,6 +87,7 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("LATTICE_SLOPES_F16", slopes_f16),
         ("LATTICE_SLOPES_F32", slopes_f32),
         // A word of the mask is eight columns of four rows.
+        ("LEVEL_TEXELS", LEVEL_TEXELS as u32),
         ("LIGHT_GROUP_WORDS", shaders::SKY_SHADE.group_size()[1]),
         ("MOST_LEVEL", LONGEST.trailing_zeros()),
         ("POINT_GROUND", visible::GROUND),
@@ -103,6 +105,7 @@ fn host() -> BTreeMap<&'static str, u32> {
         ("SIDE", TILE + 1),
         ("SLOPES_F16", slopes_f16),
         ("SLOPES_F32", slopes_f32),
+        ("SWEPT_EVERY", SWEPT_EVERY as u32),
         ("WITHIN_CELLS", WITHIN_CELLS),
     ])
 }

@@ -8,8 +8,8 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, LightBasis, Lights, PhongSpecular,
-    Quality, Scene, Specular, Sun,
+    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, LightBasis, Lights, Quality, Scene,
+    Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -180,16 +180,9 @@ impl<'a> ActiveLights<'a> {
         self.specular.is_some() && (self.sky.is_some() || self.environment.is_some())
     }
 
-    /// The lobe that reflects sky and environment by tables: one for all texels.
-    pub(super) fn by_slices(&self, quality: &Quality) -> Option<PhongSpecular> {
-        match self.specular {
-            Some(Specular::Constant(phong))
-                if self.has_specular_around() && quality.basis != Basis::Sh =>
-            {
-                Some(*phong)
-            }
-            _ => None,
-        }
+    /// The specular that reflects sky and environment by tables.
+    pub(super) fn by_slices(&self, quality: &Quality) -> Option<&'a Specular> {
+        self.specular.filter(|_| self.has_specular_around() && quality.basis != Basis::Sh)
     }
 
     /// Suns, then key lights: each uses azimuths of its own.

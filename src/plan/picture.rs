@@ -1,5 +1,6 @@
 mod drawing;
 mod images;
+mod slices;
 mod specular;
 
 use super::Plan;
@@ -27,7 +28,8 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 use drawing::Drawing;
-use images::{Harmonics, Images, SpecularSlices, Tables};
+use images::{Harmonics, Images, Tables};
+use slices::SpecularSlices;
 
 /// Requested outputs of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,17 +68,34 @@ pub struct Picture {
 /// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "indirect.specular" (specular of all bounces,
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
-/// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; that of a map of specular or with
-/// bounces uses harmonics, whose order limits the lobe. Suns use the mean of the lobe over their disc and their visible part; key
+/// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; a map of specular has tables of several
+/// exponents. With `basis sh` it uses harmonics, whose order limits the lobe, and so does a map whose tables exceed the memory budget.
+/// Suns use the mean of the lobe over their disc and their visible part; key
 /// lights and sphere lights use the lobe over their slice in each azimuth.
 ///
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.
 pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Picture) -> Result<Plan> {
-    let planned = |has_cache| with_cache(scene, quality, limits, (wanted, has_cache));
-    match planned(true) {
-        // Without a visibility cache, bounces take more time and less memory.
-        Err(Error::Limit { .. }) if quality.bounces.count > 1 => planned(false),
+    let planned = |quality: &Quality| {
+        let of = |has_cache| with_cache(scene, quality, limits, (wanted, has_cache));
+        match of(true) {
+            // Without a visibility cache, bounces take more time and less memory.
+            Err(Error::Limit { .. }) if quality.bounces.count > 1 => of(false),
+            plan => plan,
+        }
+    };
+    match planned(quality) {
+        Err(Error::Limit { .. })
+            if quality.basis == Basis::Auto
+                && matches!(scene.surface.specular, Some(Specular::Map(_))) =>
+        {
+            let mut plan = planned(&Quality { basis: Basis::Sh, ..*quality })?;
+            plan.notes.push(
+                "basis sh: tables of a map of specular exceed the limits; harmonics blur the lobe"
+                    .into(),
+            );
+            Ok(plan)
+        }
         plan => plan,
     }
 }
@@ -151,9 +170,9 @@ fn with_cache(
     let (mut tables, mut harmonics) = (None, None);
     let mirrored = active.by_slices(quality);
     // First, as their azimuths are the first constants.
-    let slices = mirrored.map(|phong| {
+    let slices = mirrored.map(|specular| {
         let lit = (active.environment, surface.border);
-        let of = (phong, lists[0].as_slice());
+        let of = (specular, images.specular_map, lists[0].as_slice());
         SpecularSlices::make(&mut builder, [size[0], size[1]], lit, (quality, limits), of)
     });
     let has_diffuse = active.environment.is_some() && quality.basis == Basis::Sh;

@@ -66,8 +66,9 @@ impl Specular {
     /// A map of `grid_points` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
     /// With [`Albedo::unknown`], which the plan takes as fully reflecting, use `f32::EPSILON`.
     ///
-    /// The plan also assumes the largest exponent everywhere, for which key lights and sphere lights take the most azimuths. If
-    /// yours are smaller, a [`Map`](Self::Map) that holds their largest one at every texel takes fewer.
+    /// The plan also assumes the largest exponent everywhere, for which key lights and sphere lights take the most azimuths, and sky
+    /// and environment the most tables. If yours are smaller, a [`Map`](Self::Map) that holds their largest one at every texel takes
+    /// fewer. Larger ones count as the largest that was planned.
     pub fn unknown(grid_points: usize, scale: f32) -> Self {
         Specular::Map(vec![PhongSpecular { exponent: LARGEST_EXPONENT, scale }; grid_points])
     }

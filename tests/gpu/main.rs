@@ -95,6 +95,7 @@ mod specular {
     mod direct;
     mod kept_tables;
     mod keys;
+    mod maps;
     mod spheres;
     mod spots;
     mod viewed_paths;

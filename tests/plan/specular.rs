@@ -154,3 +154,34 @@ fn new_heights_need_no_tables() {
         }
     }
 }
+
+/// A map of specular has tables of several exponents under a sky and under an environment. Where they exceed the memory budget, the
+/// planner's choice is harmonics, with a note, and `basis table` is refused.
+#[test]
+fn a_map_has_tables_where_they_fit() {
+    let environment = Environment::new(16, 8, vec![[0.5, 0.4, 0.3]; 128], 0.3);
+    let mut scene = crate::under_sky(fractal(SIDE, 1).expect("a field"));
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+    let phong = |i: usize| PhongSpecular { exponent: (i % 1000) as f32, scale: 0.5 };
+    scene.surface.specular = Some(Specular::Map((0..SIDE * SIDE).map(phong).collect()));
+    let of = |scene: &Scene, basis, budget| {
+        let quality = Quality { basis, ..Quality::default() };
+        plan::picture(scene, &quality, &Limits::boundless(true, budget), Picture::default())
+    };
+    let (large, small) = (8 << 30, 100 << 20);
+    let has = |plan: &Plan, pass: &str| plan.passes.iter().any(|p| p.name() == pass);
+    // A sky has one table for all azimuths.
+    for budget in [large, small] {
+        let plan = of(&scene, Basis::Auto, budget).expect("a plan");
+        assert!(has(&plan, "specular_light") && !has(&plan, "light_matrix"));
+        assert!(plan.notes.iter().any(|n| n.contains("from tables of 21 exponents")));
+        assert_eq!(missing_barriers(&plan.passes), vec![]);
+    }
+    scene.lights.environment = Some(environment.expect("an environment"));
+    let plan = of(&scene, Basis::Auto, large).expect("a plan");
+    assert!(has(&plan, "specular_light") && !has(&plan, "light_matrix"));
+    let plan = of(&scene, Basis::Auto, small).expect("a plan");
+    assert!(!has(&plan, "specular_light") && has(&plan, "light_matrix"));
+    assert!(plan.notes.iter().any(|n| n.starts_with("basis sh: tables of a map of specular")));
+    of(&scene, Basis::Table, small).expect_err("beyond the budget");
+}

@@ -357,9 +357,8 @@ pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
     if !approximates_specular(scene, bounces) {
         return Ok(());
     }
-    let found = if bounces > 0 { "specular with bounces" } else { "a map of specular" };
-    let expected = "one exponent and scale, without --bounces; SH of --sh-order only approximate other specular";
-    Err(Error::setting(format!("--specular with {what}"), found, expected))
+    let expected = "no --bounces; SH of --sh-order only approximate specular light between them";
+    Err(Error::setting(format!("--specular with {what}"), "specular with bounces", expected))
 }
 
 /// Reports what no device can plan, before a device is opened.

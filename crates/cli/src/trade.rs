@@ -21,7 +21,7 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::trade::{Place, ladders, places, refused, start_of};
+use ridgelight_trade::trade::{Place, ladders, places, refused, start};
 
 use crate::args::TradeArgs;
 use crate::render::auto;
@@ -63,7 +63,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
-    let start = Quality { bounces, ..start_of(&scene, bounces.count) };
+    let start = Quality { bounces, ..start() };
     start.check()?;
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;

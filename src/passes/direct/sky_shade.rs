@@ -1,7 +1,7 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
-use crate::passes::specular_tables::SpecularTables;
+use crate::passes::specular_tables::{MapLevels, SpecularTables};
 use crate::passes::sweep::Sweep;
 use crate::scene::Border;
 
@@ -24,7 +24,9 @@ pub(crate) struct Images {
 /// What a Phong lobe about the mirror direction needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Specular {
+    /// Of the first level.
     pub tables: SpecularTables,
+    pub levels: MapLevels,
     pub blocked_sum: ResourceId,
     /// The eye over the field's base; the last is 0 for a view from straight above.
     pub eye_m: [f32; 4],
@@ -32,6 +34,12 @@ pub(crate) struct Specular {
 
 /// Light below this share of a lobe's largest value in an azimuth counts as 0.
 const LEAST_SHARE: f32 = 1e-4;
+
+/// Cosine to a lobe's axis below which light counts as 0.
+pub(crate) fn least_cosine(tables: &SpecularTables) -> f32 {
+    let least = LEAST_SHARE * tables.nearest_share;
+    least.powf(1.0 / tables.exponent.max(1e-3))
+}
 
 /// Light of a uniform sky and of an environment through the horizons of a batch.
 pub(crate) fn plan(
@@ -54,20 +62,28 @@ pub(crate) fn plan(
         bound.extend([("env_sum", sum), ("env_tables", tables)]);
     }
     let mut push = shaders::ShadePush::of(batch, cell_m);
-    if let Some(Specular { tables, blocked_sum, eye_m }) = images.specular {
+    if let Some(Specular { tables, levels, blocked_sum, eye_m }) = images.specular {
         bound.extend([("specular_tables", tables.tables), ("blocked_sum", blocked_sum)]);
         push.eye_m = eye_m;
         push.exponent = tables.exponent;
-        let least = LEAST_SHARE * tables.nearest_share;
-        push.least_cosine = least.powf(1.0 / tables.exponent.max(1e-3));
+        push.least_cosine = least_cosine(&tables);
+        if let Some(of_map) = levels.of_map {
+            bound.extend(of_map.bound());
+            bound.push(("constants", levels.constants));
+            push.first_level = levels.first_texel as i32;
+            push.level_count = levels.count as i32;
+            push.levels_per_log = levels.per_log;
+        }
     }
     if let Some([dirty, list]) = images.edited {
         push.relights = 1;
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
+    let of_map = images.specular.and_then(|specular| specular.levels.of_map);
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 }
-        + if images.specular.is_some() { 32 } else { 0 };
+        + if images.specular.is_some() { 32 } else { 0 }
+        + if of_map.is_some() { 48 } else { 0 };
     let pass = builder.pass(
         shaders::SkyShade {
             layer_shift: batch.layer_shift as i32,
@@ -80,6 +96,7 @@ pub(crate) fn plan(
             marches_rows: axis.marches_rows,
             has_specular: images.specular.is_some(),
             reads_lane_buffer: images.lane_buffer.is_some(),
+            specular_is_map: of_map.is_some(),
             specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },
         part,

@@ -9,24 +9,42 @@ pub(crate) struct MirrorMap {
     /// Columns of a whole turn, a multiple of 4; the stored ones repeat.
     pub columns: u32,
     stored: u32,
-    height: u32,
+    pub height: u32,
+    /// Row within the image: maps of several exponents lie one above the other.
+    pub first_row: u32,
 }
 
 impl MirrorMap {
-    /// For a lobe of this `exponent`, and light that repeats `repeats` times in a turn.
+    /// For a lobe of each exponent, and light that repeats `repeats` times in a turn.
     ///
     /// Up to an exponent n of 6,640, texels are at most a quarter of the lobe's standard deviation, 1/√n radians, apart.
-    pub(crate) fn make(builder: &mut Builder, name: &str, exponent: f32, repeats: u32) -> Self {
-        let wanted = (4.0 * std::f32::consts::TAU * exponent.sqrt()).ceil() as u32;
-        let wanted = wanted.next_power_of_two().clamp(64, 2048);
-        let mut stored = wanted.div_ceil(repeats);
-        if !(stored * repeats).is_multiple_of(4) {
-            stored = stored.next_multiple_of(4);
-        }
-        let (columns, height) = (stored * repeats, wanted / 2 + 1);
-        let extent = [stored, height, 1];
+    pub(crate) fn make(
+        builder: &mut Builder,
+        name: &str,
+        levels: &[f32],
+        repeats: u32,
+    ) -> Vec<Self> {
+        let mut extent = [0, 0, 1];
+        let mut of = |exponent: f32| {
+            let wanted = (4.0 * std::f32::consts::TAU * exponent.sqrt()).ceil() as u32;
+            let wanted = wanted.next_power_of_two().clamp(64, 2048);
+            let mut stored = wanted.div_ceil(repeats);
+            if !(stored * repeats).is_multiple_of(4) {
+                stored = stored.next_multiple_of(4);
+            }
+            let (columns, height, first_row) = (stored * repeats, wanted / 2 + 1, extent[1]);
+            extent = [stored.max(extent[0]), first_row + height, 1];
+            Self { image: ResourceId(0), columns, stored, height, first_row }
+        };
+        let mut all: Vec<Self> = levels.iter().map(|exponent| of(*exponent)).collect();
         let image = builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false);
-        Self { image, columns, stored, height }
+        all.iter_mut().for_each(|it| it.image = image);
+        all
+    }
+
+    /// Periods in a turn.
+    pub(crate) fn repeats(&self) -> u32 {
+        self.columns / self.stored
     }
 
     /// Fills the map from the whole slices of tables. `first_azimuth_rad`: direction of azimuth 0 if the azimuths are equally
@@ -51,7 +69,11 @@ impl MirrorMap {
             shaders::MIRROR_MAP.groups([self.stored, self.height, 1]),
             &shaders::MirrorMapPush {
                 columns: self.columns as i32,
+                stored: self.stored as i32,
                 height: self.height as i32,
+                first_row: self.first_row as i32,
+                first_peak: tables.first_peak as i32,
+                peaks: tables.peaks as i32,
                 azimuth_count: count as i32,
                 node: (tables.nodes - 1) as i32,
                 first_rad: tables.first_rad(),
@@ -113,12 +135,13 @@ mod tests {
     fn periods_are_whole_columns() {
         for exponent in [0.0, 20.0, 1000.0, 6640.0, 1e4] {
             let mut builder = Builder::new(&Limits::lavapipe());
-            let whole = MirrorMap::make(&mut builder, "whole", exponent, 1);
+            let mut make = |repeats| MirrorMap::make(&mut builder, "map", &[exponent], repeats)[0];
+            let whole = make(1);
             assert_eq!(whole.columns, whole.stored);
             for repeats in [2, 3, 4, 5, 7, 9, 63, 64, 511, 512, 1023, 1024] {
-                let map = MirrorMap::make(&mut builder, "map", exponent, repeats);
+                let map = make(repeats);
                 assert_eq!([map.columns % 4, map.height], [0, whole.height]);
-                assert_eq!(map.columns, map.stored * repeats);
+                assert_eq!([map.columns, map.repeats()], [map.stored * repeats, repeats]);
                 assert!(map.columns >= whole.columns && map.stored <= whole.stored.max(4));
             }
         }

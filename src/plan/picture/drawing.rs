@@ -1,7 +1,8 @@
 //! Plans the passes of a picture, light by light.
 
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
-use super::images::{Harmonics, Images, SpecularSlices, Tables};
+use super::images::{Harmonics, Images, Tables};
+use super::slices::SpecularSlices;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, WalkedOver, bounce_name};
@@ -118,8 +119,9 @@ impl Drawing<'_> {
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
             let specular = self.slices.as_ref().map(|slices| passes::sky_shade::Specular {
-                tables: slices.swept,
-                blocked_sum: slices.blocked_sum,
+                tables: slices.first_swept().0,
+                levels: slices.hidden.levels,
+                blocked_sum: slices.hidden.blocked_sum,
                 eye_m: self.eye_m,
             });
             if sky_sum.is_some() || self.tables.is_some() {

@@ -2,13 +2,10 @@
 
 use super::super::active_lights::ActiveLights;
 use super::Picture;
-use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
-use crate::passes::azimuths;
+use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::azimuths::Azimuth;
-use crate::passes::mirror_map::{self, MirrorMap};
 use crate::passes::sh_layout::{Sh, WedgeTexels};
-use crate::passes::specular_tables::SpecularTables;
-use crate::scene::{Albedo, Border, Environment, PhongSpecular, Quality, Scene, Specular, Wedges};
+use crate::scene::{Albedo, Border, Environment, Quality, Scene, Specular, Wedges};
 
 /// Images of the field's size, and the environment.
 pub(super) struct Images {
@@ -135,85 +132,6 @@ impl Tables {
         let format = Format::Rgba32Float;
         let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
         Self { wedge_rows, tables }
-    }
-}
-
-/// Specular of sky and environment by tables of a Phong lobe.
-pub(super) struct SpecularSlices {
-    /// Of the swept azimuths, up to each elevation.
-    pub swept: SpecularTables,
-    /// Of fine azimuths, the whole slices.
-    pub fine: SpecularTables,
-    /// The fine azimuths, in the buffer "constants", and their rows of the environment.
-    pub fine_azimuths: ResourceId,
-    pub fine_count: u32,
-    pub fine_rows: Option<ResourceId>,
-    /// Direction of the first fine azimuth.
-    pub fine_first_rad: f64,
-    /// By mirror direction: of the fine azimuths, and of the swept ones.
-    pub maps: [MirrorMap; 2],
-    pub blocked_sum: ResourceId,
-    pub scale: f32,
-}
-
-impl SpecularSlices {
-    /// For a field of `size`.
-    pub(super) fn make(
-        builder: &mut Builder,
-        size: [u32; 2],
-        (environment, border): (Option<&Environment>, Border),
-        (quality, limits): (&Quality, &Limits),
-        (PhongSpecular { exponent, scale }, circle): (PhongSpecular, &[Azimuth]),
-    ) -> Self {
-        // An azimuth for each column of the environment: a bright spot stays in its place.
-        let fits = environment
-            .map_or(u64::MAX, |e| limits.buffer_bytes / (48 * e.rows_above_ground(border) as u64));
-        let fine_count = environment
-            .map_or(512, |e| (e.width() as u32).clamp(512, 2048))
-            .min(limits.image_layers)
-            .min(fits.min(2048) as u32);
-        let turn_rad = environment.map_or(0.0, Environment::rotation_rad);
-        let fine: Vec<Azimuth> = azimuths::even_wedges(fine_count, turn_rad);
-        let (fine_azimuths, first) = builder.constants(bytemuck::cast_slice(&fine));
-        assert_eq!(first, 0, "azimuths are read from the first constant");
-        let fine_rows = environment.map(|e| {
-            let rows = e.rows_above_ground(border) as u64;
-            builder.buffer("fine_rows", u64::from(fine_count) * rows * 48, false)
-        });
-        let layers = |count: u32| if environment.is_some() { count } else { 1 };
-        let nodes = if border == Border::Open { 256 } else { 128 };
-        let [swept, fine] =
-            [("specular_tables", nodes, quality.azimuths), ("fine_specular_tables", 1, fine_count)]
-                .map(|(name, nodes, count)| {
-                    let layers = layers(count);
-                    // Where light decides the azimuths, they may lie four times as far apart as even ones.
-                    let farthest = if layers > 1 { 4.0 } else { 1.0 };
-                    let gap_rad = farthest * std::f32::consts::PI / count as f32;
-                    let of = (exponent, gap_rad);
-                    SpecularTables::make(builder, name, of, border, [nodes, layers])
-                });
-        // A sky alone is the same in every azimuth.
-        let repeats = match environment {
-            Some(_) => [1, 1],
-            None => [fine_count, mirror_map::repeats(circle)],
-        };
-        let maps = [("unoccluded_map", repeats[0]), ("swept_map", repeats[1])]
-            .map(|(name, repeats)| MirrorMap::make(builder, name, exponent, repeats));
-        let [cols, rows] = size;
-        let extent = [cols, rows, 1];
-        let blocked_sum =
-            builder.image("blocked_sum", Owner::Internal, Format::Rgba32Float, extent, false);
-        Self {
-            swept,
-            fine,
-            fine_azimuths,
-            fine_count,
-            fine_rows,
-            fine_first_rad: turn_rad + std::f64::consts::PI / f64::from(fine_count),
-            maps,
-            blocked_sum,
-            scale,
-        }
     }
 }
 

@@ -2,23 +2,24 @@
 
 use super::super::active_lights::ActiveLights;
 use super::drawing::Drawing;
+use super::slices::SpecularLevel;
 use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::specular_tables;
 use crate::passes::sphere_shading::SphereSpecular;
 use crate::passes::sun_shade::KeySpecular;
 use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
 use crate::scene::{
-    Basis, BounceEngine, BounceSpecular, LightBasis, PhongSpecular, Quality, Receiver, Specular,
-    Sun,
+    BounceEngine, BounceSpecular, LightBasis, PhongSpecular, Quality, Receiver, Specular, Sun,
 };
 use crate::{Error, Result};
 
 /// Adapts the quality to a scene with specular.
 ///
 /// # Errors
-/// A light or a basis that specular does not support.
+/// A light that specular does not support.
 pub(super) fn quality(
     quality: &Quality,
     active: &ActiveLights<'_>,
@@ -52,22 +53,14 @@ pub(super) fn quality(
         return refuse(&format!("specular with bounces under a {name}"), alone);
     }
     notes.extend(active.key_notes(&quality));
-    let by_slices = active.by_slices(&quality).is_some();
-    match quality.basis {
-        _ if !active.has_specular_around() => Ok(quality),
-        Basis::Sh => Ok(quality),
-        Basis::Auto | Basis::Table if by_slices => {
-            notes.push("specular: each azimuth's slice of the lobe, from tables".into());
-            Ok(quality)
-        }
-        Basis::Auto => {
-            notes.push("basis sh: a map of specular needs harmonics, which blur the lobe".into());
-            Ok(Quality { basis: Basis::Sh, ..quality })
-        }
-        Basis::Table => {
-            refuse("a map of specular with `basis table`", "`basis sh`, or one exponent and scale")
-        }
+    if let Some(specular) = active.by_slices(&quality) {
+        let of = match specular_tables::levels(specular).len() {
+            1 => String::new(),
+            count => format!(" of {count} exponents"),
+        };
+        notes.push(format!("specular: each azimuth's slice of the lobe, from tables{of}"));
     }
+    Ok(quality)
 }
 
 /// Chooses the engine that supports specular bounces.
@@ -149,33 +142,36 @@ impl Drawing<'_> {
             passes::env_wedges::plan(builder, "fine", of, slices.fine_count, ids);
             (e, rows)
         });
-        slices.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
-        slices.fine.plan(builder, "fine", sky, fine_rows, (slices.fine_azimuths, false));
-        let [unoccluded, swept] = &slices.maps;
-        unoccluded.plan(
-            builder,
-            &slices.fine,
-            ("unoccluded", "the reflection without occlusion, by mirror direction"),
-            (slices.fine_azimuths, slices.fine_count),
-            Some(slices.fine_first_rad),
-        );
-        swept.plan(
-            builder,
-            &slices.swept,
-            ("swept", "the same from the swept azimuths, as occlusion is a share of them"),
-            (sweeping.azimuths, count),
-            None,
-        );
+        for SpecularLevel { swept, fine: (fine, unoccluded) } in &slices.levels {
+            // Of a map, each level has its own passes.
+            let part = |name: &str| match slices.levels.len() {
+                1 => name.to_owned(),
+                _ => format!("{name} exponent {:.1}", fine.exponent).trim_start().to_owned(),
+            };
+            fine.plan(builder, &part("fine"), sky, fine_rows, (slices.fine_azimuths, false));
+            unoccluded.plan(
+                builder,
+                fine,
+                (&part("unoccluded"), "the reflection without occlusion, by mirror direction"),
+                (slices.fine_azimuths, slices.fine_count),
+                Some(slices.fine_first_rad),
+            );
+            let Some((tables, swept)) = swept else { continue };
+            tables.plan(builder, &part(""), sky, swept_rows, (sweeping.azimuths, true));
+            let why = "the same from the swept azimuths, as occlusion is a share of them";
+            let of = (sweeping.azimuths, count);
+            swept.plan(builder, tables, (&part("swept"), why), of, None);
+        }
     }
 
     /// Specular of sky and environment by tables of the lobe.
     pub(super) fn slices_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
         let (Some(slices), Some(sum)) = (&self.slices, self.images.specular_sum) else { return };
+        let Some(phong) = self.phong() else { return };
         let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
-        let ids = [lane_heights, slices.blocked_sum, sum];
-        let viewed = (slices.scale, self.eye_m);
-        let maps = slices.maps.each_ref();
-        passes::specular_light::plan(&mut self.builder, field, viewed, maps, ids);
+        let maps = [&slices.levels[0].fine.1, &slices.first_swept().1];
+        let ids = (&slices.hidden, [lane_heights, sum]);
+        passes::specular_light::plan(&mut self.builder, field, (phong, self.eye_m), maps, ids);
         self.specular_is_begun = true;
     }
 
@@ -383,11 +379,6 @@ mod tests {
             assert!(planned(lights.clone(), 0.5, base).is_ok(), "{said}");
             assert!(planned(lights, 0.0, quality).is_ok(), "{said}");
         }
-        let map = Specular::Map(vec![PhongSpecular { exponent: 9.0, scale: 0.5 }; 32 * 32]);
-        let by_table = Quality { basis: Basis::Table, ..base };
-        let (mapped, limits) = (scene(sky(), map), Limits::lavapipe());
-        let refused = plan::picture(&mapped, &by_table, &limits, Picture::default()).unwrap_err();
-        assert!(refused.to_string().contains("a map of specular with `basis table`"), "{refused}");
         assert!(planned(of_key([0.0; 3]), 0.5, bounced).is_ok());
         assert!(planned(of_sphere([0.0; 3]), 0.5, bounced).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());

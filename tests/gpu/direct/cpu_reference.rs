@@ -192,6 +192,15 @@ pub(crate) fn pictures() -> Vec<Case> {
             Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), specular: phong };
         Scene { field: rough(9, 14, 43), surface, lights }
     };
+    let mapped_sky = {
+        let phong = |i: usize| PhongSpecular {
+            exponent: (77 * i % 301) as f32,
+            scale: (i % 4) as f32 * 0.2,
+        };
+        let mut scene = mirrored_sky.clone();
+        scene.surface.specular = Some(Specular::Map((0..9 * 14).map(phong).collect()));
+        scene
+    };
     // Under a sky alone: one table for all azimuths.
     let shiny_sky = |exponent, border| {
         let suns = vec![sun(0.7, 0.1, [1.0, 2.0, 3.0])];
@@ -448,6 +457,7 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
         )),
         with_an_eye(picture("a map of lobes, with an eye", mapped, quality, false, false)),
+        picture("a map of lobes under a sky, open", mapped_sky, quality, false, false),
     ]
 }
 

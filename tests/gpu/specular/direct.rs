@@ -68,8 +68,8 @@ fn level_ground_mirrors_the_eye_by_harmonics() {
         let constant = shiny(field(3, 5, [1.0, 2.0], |_, _| 4.0), exponent, 0.25);
         let mut map = constant.clone();
         map.surface.specular = Some(Specular::Map(vec![of_texel; 15]));
-        let by_map = Quality { sh_order: order, ..Quality::default() };
-        for (scene, quality) in [(constant, sh(order)), (map, by_map)] {
+        for scene in [constant, map] {
+            let quality = sh(order);
             let n = order as usize;
             let bands = phong(n, exponent.into()).into_iter().zip(cap(n, FRAC_PI_2));
             let bands: Vec<f64> = bands.map(|(l, c)| 0.25 * l * c).collect();

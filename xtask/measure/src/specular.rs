@@ -1,5 +1,5 @@
 //! Errors of Phong specular against the path tracer: direct light by exponent, by slices of the lobe
-//! and by SH of receiver and order, then of suns; and indirect light by direction and as from straight above (NS09, figure 5).
+//! and by SH of receiver and order, then of a map of exponents and of suns; and indirect light by direction and as from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
@@ -23,6 +23,8 @@ use crate::common::frames::{
 use crate::common::{Outcome, head, inputs, median, plot};
 
 const EXPONENTS: [f32; 4] = [1.0, 5.0, 20.0, 80.0];
+/// Of direct light.
+const DIRECT_EXPONENTS: [f32; 5] = [1.0, 5.0, 20.0, 100.0, 1000.0];
 const BOUNCES: u32 = 2;
 /// The engine, what is kept, and the order; the first three are in the picture.
 const FORMS: [(BounceEngine, BounceSpecular, u32); 8] = [
@@ -68,7 +70,7 @@ pub fn direct(mut args: Args) -> Outcome {
         device(&gpu)
     );
     head("| exponent | azimuths | receiver | order | RMSE % | paths' noise % |");
-    for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0] {
+    for exponent in DIRECT_EXPONENTS {
         let scene = scene(&ground, 0.0, (exponent, 1.0));
         let [reference, deviation] = traced(&mut gpu, &scene, 0, DIRECT_BATCHES)?;
         let noise = 100.0 * rms_of(&deviation) / mean(&reference);
@@ -95,7 +97,41 @@ pub fn direct(mut args: Args) -> Outcome {
             }
         }
     }
+    map(&mut gpu, &ground)?;
     suns(&mut gpu, &ground)
+}
+
+/// Specular of this scale whose grid points take the exponents in turn.
+fn map_of(exponents: &[f32], grid_points: usize, scale: f32) -> Specular {
+    let all = exponents.iter().cycle().take(grid_points);
+    Specular::Map(all.map(|&exponent| PhongSpecular { exponent, scale }).collect())
+}
+
+/// Each exponent of a map: errors over its grid points, over their mean.
+fn map(gpu: &mut Headless, ground: &(HeightField, Environment)) -> Outcome {
+    println!("\nA map of all of these:\n");
+    head("| exponent | azimuths | basis | RMSE % | paths' noise % |");
+    let mut scene = scene(ground, 0.0, (0.0, 1.0));
+    let map = map_of(&DIRECT_EXPONENTS, ground.0.heights_m().len(), 1.0);
+    scene.surface.specular = Some(map.clone());
+    let [reference, deviation] = traced(gpu, &scene, 0, DIRECT_BATCHES)?;
+    for basis in [Basis::Table, Basis::Sh] {
+        let quality = Quality { basis, ..Quality::default() };
+        let light = drawn(gpu, &scene, &quality, 0)?.light;
+        for exponent in DIRECT_EXPONENTS {
+            let of = |light: &Colours| -> Colours {
+                let all = light.iter().enumerate();
+                all.filter(|(i, _)| map.at(*i).exponent == exponent).map(|(_, c)| *c).collect()
+            };
+            let [reference, deviation, light] = [&reference, &deviation, &light].map(of);
+            let noise = 100.0 * rms_of(&deviation) / mean(&reference);
+            let error = error(&light, &reference)?;
+            let rmse = (error * error - noise * noise).max(0.0).sqrt();
+            let azimuths = quality.azimuths;
+            println!("| {exponent} | {azimuths} | {basis} | {rmse:.2} | {noise:.3} |");
+        }
+    }
+    Ok(())
 }
 
 /// Times of frames by light and exponent, with the default settings.
@@ -121,8 +157,13 @@ pub fn times(args: Args) -> Outcome {
         ("sun", Lights { suns: vec![sun], ..Lights::default() }),
     ];
     for (name, lights) in lights {
-        for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0, 10_000.0] {
-            let mut scene = scene(&ground, 0.5, (exponent, 0.4));
+        let all = [1.0, 5.0, 20.0, 100.0, 1000.0, 10_000.0];
+        let map = map_of(&all[..5], ground.0.heights_m().len(), 0.4);
+        let one = |exponent| Specular::Constant(PhongSpecular { exponent, scale: 0.4 });
+        let constant = all.map(|exponent| (exponent.to_string(), one(exponent)));
+        for (exponent, specular) in constant.into_iter().chain([("map, 1 to 1000".into(), map)]) {
+            let mut scene = scene(&ground, 0.5, (0.0, 0.4));
+            scene.surface.specular = Some(specular);
             scene.lights = lights.clone();
             let mut diffuse = scene.clone();
             diffuse.surface.specular = None;

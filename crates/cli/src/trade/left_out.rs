@@ -120,7 +120,7 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use ridgelight::scene::{Bounces, HeightField, Lights, Quality, Scene, Sun, Surface};
-    use ridgelight_trade::trade::{Value as Measured, ladders, places, start_of};
+    use ridgelight_trade::trade::{Value as Measured, ladders, places, start};
 
     /// A sky and a sun with bounces have over a hundred thousand settings. With four measured,
     /// nearly all are ruled out or open. The report stays below 64 KiB (40 settings and 40 reasons
@@ -136,7 +136,7 @@ mod tests {
         };
         let ladders = ladders(&scene, 3);
         let bounces = Bounces { count: 3, ..Bounces::default() };
-        let start = Quality { bounces, ..start_of(&scene, bounces.count) };
+        let start = Quality { bounces, ..start() };
         let places = places(&ladders, &start);
         assert!(places.len() > 100_000, "{}", places.len());
         let mut walk = Walk::new(&ladders, &places, &start, 1e-4);

@@ -29,6 +29,7 @@ impl Tables<'_> {
     /// and of the place.
     ///
     /// aⁿ: ln(1 - p²) changes by 2 p / (1 - p²) a p, and errs by its series' 1e-7 and 12 roundings; the exponential by (3 + 2 |x|) ulp.
+    /// Where a is no larger than its error, aⁿ is at most (a + error)ⁿ.
     /// The peak's angle turns by the direction's error over a, an arc tangent and 4 ε π. Across the place's error, values change
     /// no faster than between any of the nodes and peaks there.
     pub fn light(
@@ -42,12 +43,15 @@ impl Tables<'_> {
         let (cos, sin) = (f64::from(azimuth.cos_phi), f64::from(azimuth.sin_phi));
         let along = mirror.x * cos + mirror.y * sin;
         let across = mirror.x * sin - mirror.y * cos;
-        let short2 = (1.0 - across * across).max(1e-30);
+        // The azimuth's sine and cosine are rounded: each of the two forms of a² is exact where the shader uses it.
+        let p2 = across * across;
+        let short2 =
+            if p2 > 0.5 { along * along + mirror.z * mirror.z } else { 1.0 - p2 }.max(1e-30);
         let logarithm = -short2.ln();
-        let mut weight = (-0.5 * n * logarithm).exp();
-        if self.is_shared() {
-            weight *= f64::from(azimuth.wedge_rad);
-        }
+        let wedge = if self.is_shared() { f64::from(azimuth.wedge_rad) } else { 1.0 };
+        let weight = wedge * (-0.5 * n * logarithm).exp();
+        let off_a = off_rad + 4.0 * EPSILON;
+        let by_error = if short2.sqrt() < off_a { wedge * (2.0 * off_a).powf(n) } else { 0.0 };
         let x = 0.5 * n * logarithm;
         let power_off = (n * across.abs() * off_rad / short2
             + x * (1e-7 + 12.0 * EPSILON)
@@ -81,7 +85,8 @@ impl Tables<'_> {
         let moved = off_peak * change[0] + off_node * change[1];
         // Behind and below on one of them.
         let either = if place.abs() <= off_peak && first_rad > -PI { light } else { DVec3::ZERO };
-        let tolerance = weight * (moved + light * (power_off + 10.0 * EPSILON) + either);
+        let tolerance =
+            weight * (moved + light * (power_off + 10.0 * EPSILON) + either) + by_error * light;
         Tabulated { light: weight * light, tolerance }
     }
 }

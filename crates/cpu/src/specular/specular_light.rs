@@ -64,17 +64,52 @@ impl Map<'_> {
     }
 }
 
-/// Exit radiance for scale 1, from what horizons hide.
-pub fn specular_light(whole: &Tabulated, swept: &Tabulated, blocked: DVec3) -> Tabulated {
-    let unoccluded = whole.light.max(DVec3::ZERO);
+/// Unoccluded light at a `place` among `count` levels of exponents: Lagrange's polynomial through the four around it, or through
+/// all.
+///
+/// A place errs by a logarithm and a product, 6 ε of it. Weights of four even nodes are at most 1 by magnitude, change by no more
+/// than 11 / 6 a level, and err by 12 ε.
+pub fn between_levels(place: f64, count: usize, level: impl Fn(usize) -> Tabulated) -> Tabulated {
+    let used = count.min(4);
+    let first = (place as usize).saturating_sub(1).min(count - used);
+    let mut sum = Tabulated::default();
+    let off = if used > 1 { 11.0 / 6.0 * 6.0 * EPSILON * place + 12.0 * EPSILON } else { 0.0 };
+    for i in 0..used {
+        let others = (0..used).filter(|j| *j != i);
+        let of = |j: usize| (place - (first + j) as f64) / (i as f64 - j as f64);
+        let weight: f64 = others.map(of).product();
+        let Tabulated { light, tolerance } = level(first + i);
+        sum.light += weight * light;
+        sum.tolerance += weight.abs() * tolerance + off * light.abs();
+    }
+    sum
+}
+
+/// The share of a level's light that horizons hide.
+pub fn hidden_share(swept: &Tabulated, blocked: DVec3) -> Tabulated {
     let mut all = Tabulated::default();
     for c in 0..3 {
         let (b, t) = (blocked[c], swept.light[c]);
-        let hidden = if b <= 0.0 { 0.0 } else { b / t.max(b) };
+        all.light[c] = if b <= 0.0 { 0.0 } else { b / t.max(b) };
         // A share errs with what it is of.
-        let off = hidden * (swept.tolerance[c] / t.max(b).max(1e-30) + 8.0 * EPSILON);
-        all.light[c] = unoccluded[c] * (1.0 - hidden);
-        all.tolerance[c] = whole.tolerance[c] + unoccluded[c] * (off.min(1.0) + 4.0 * EPSILON);
+        let off = swept.tolerance[c] / t.max(b).max(1e-30) + 8.0 * EPSILON;
+        all.tolerance[c] = (all.light[c] * off).min(1.0);
     }
     all
+}
+
+/// Exit radiance for scale 1, from what horizons hide at one level, or at two, `t` levels above the first.
+pub fn specular_light(whole: &Tabulated, hidden: &[Tabulated], t: f64) -> Tabulated {
+    let unoccluded = whole.light.max(DVec3::ZERO);
+    let of = |of: fn(&Tabulated) -> DVec3| match hidden {
+        [one] => of(one),
+        [one, above, ..] => of(one).lerp(of(above), t),
+        [] => DVec3::ZERO,
+    };
+    let (share, off) = (of(|one| one.light), of(|one| one.tolerance));
+    let rounded = DVec3::splat(if hidden.len() > 1 { 100.0 } else { 4.0 } * EPSILON);
+    Tabulated {
+        light: unoccluded * (1.0 - share),
+        tolerance: whole.tolerance + unoccluded * (off + rounded),
+    }
 }

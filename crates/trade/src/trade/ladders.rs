@@ -4,7 +4,7 @@
 //! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, Fuse, Lights, Lines, Method, Precision, Quality, Scene, Specular, Values, setting,
+    Basis, Fuse, Lights, Lines, Method, Precision, Quality, Scene, Values, setting,
 };
 use std::ops::RangeInclusive;
 
@@ -96,22 +96,13 @@ fn has_specular(scene: &Scene) -> bool {
     scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0)
 }
 
-/// Whether specular of sky and environment needs harmonics: that of a map, or with bounces.
-fn needs_harmonics(scene: &Scene, bounces: u32) -> bool {
-    let lights = scene.lights.lit();
-    let is_map = matches!(scene.surface.specular, Some(Specular::Map(_)));
-    let is_around = lights.sky.is_some() || lights.environment.is_some();
-    has_specular(scene) && is_around && (is_map || bounces > 0)
-}
-
-/// Whether `render` only approximates the scene's specular, by harmonics.
+/// Whether `render` only approximates the scene's specular: light between bounces is a series of harmonics.
 pub fn approximates_specular(scene: &Scene, bounces: u32) -> bool {
-    has_specular(scene) && bounces > 0 || needs_harmonics(scene, bounces)
+    has_specular(scene) && bounces > 0
 }
 
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
-/// without an environment. A map of Phong specular, and bounces of it, are lit by harmonics only;
-/// its bounces are measured with pyramids only, at every texel.
+/// without an environment. Bounces of Phong specular are measured with pyramids only, at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     // No setting changes anything about lights of radiance 0.
     let (lights, has_specular) = (&scene.lights.lit(), has_specular(scene));
@@ -159,15 +150,21 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);
-    let by_harmonics = needs_harmonics(scene, bounces);
-    add(has_environment && !by_harmonics, table.idle_if(|q| q.basis == Basis::Sh));
+    add(has_environment, table.idle_if(|q| q.basis == Basis::Sh));
     let detail = "higher orders of harmonics, then tables: the environment's detail";
-    let bases = &["basis sh sh_order: 2 3 4 5 6", "basis: table"];
-    let basis = Ladder::new("basis", &bases[..2 - usize::from(by_harmonics)], detail);
-    add(has_environment || (has_sky && has_specular), basis);
+    let is_every = has_specular && bounces > 0;
+    // With specular between bounces, the order counts beside tables, too.
+    let bases: &[&str] = if is_every {
+        &["basis: sh table"]
+    } else {
+        &["basis sh sh_order: 2 3 4 5 6", "basis: table"]
+    };
+    let is_around = has_environment || (has_sky && has_specular);
+    add(is_around, Ladder::new("basis", bases, detail));
+    let sharp = "higher orders of harmonics: sharper lobes between bounces";
+    add(is_every, Ladder::new("SH order", &["sh_order: 2 3 4 5 6"], sharp));
     let dense = "visibility and indirect light at more texels: sharp shadows";
     let subsample = Ladder::new("sub-sampling", &["subsample: 4 2 1"], dense);
-    let is_every = has_specular && bounces > 0;
     add(
         (has_environment || bounces > 0) && !is_every,
         subsample.idle_if(|q| q.basis != Basis::Sh && q.bounces.count == 0),
@@ -181,7 +178,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let narrow = "more azimuths of bounces: narrow bright features";
     let azimuths = &["bounce_azimuths: 8 16 32 64"];
     add(bounces > 0, Ladder::new("bounce azimuths", azimuths, narrow));
-    let start = start_of(scene, bounces);
+    let start = start();
     for ladder in &mut all {
         let is_default = |step: &usize| {
             let mut quality = start;
@@ -197,12 +194,6 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
 /// The start of the defaults: sweeps and tables, to which they resolve.
 pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
-}
-
-/// The start for a scene: a map of Phong specular, and bounces of it, are lit by harmonics.
-pub fn start_of(scene: &Scene, bounces: u32) -> Quality {
-    let basis = if needs_harmonics(scene, bounces) { Basis::Sh } else { Basis::Table };
-    Quality { basis, ..start() }
 }
 
 /// Settings, and their step on each ladder.

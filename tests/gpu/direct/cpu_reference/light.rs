@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::Shape;
-use ridgelight::scene::{Albedo, Border, SphereLight, normal};
+use ridgelight::scene::{Albedo, Border, PhongSpecular, SphereLight, normal};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, wedge_of};
 use ridgelight_cpu::light::Receiver;
@@ -24,7 +24,7 @@ use ridgelight_cpu::tolerance::{
 
 use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
 use crate::specular::cpu_reference::key::key_specular;
-use crate::specular::cpu_reference::slices::{slices, view_from};
+use crate::specular::cpu_reference::slices::{Level, Levels, table, view_from};
 use crate::specular::cpu_reference::sphere;
 
 pub(crate) type Rgb = glam::DVec3;
@@ -179,47 +179,75 @@ pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
     }
     if let Some(got) = run.floats(pass, "blocked_sum") {
-        pairs.extend(blocked_sum(run, pass, &got, (range, error)));
+        pairs.extend(blocked_sum(run, pass, (&got, 0), (range.clone(), error)));
+    }
+    if let Some(got) = run.floats(pass, "blocked_above") {
+        pairs.extend(blocked_sum(run, pass, (&got, 1), (range, error)));
     }
     pairs
 }
 
-/// What horizons hide from a lobe: each azimuth's share, from the device's own tables.
+/// What horizons hide from a lobe: each azimuth's share, from the device's own tables. Of a map, at the level of exponents at
+/// or below each texel's own, or `above` it.
 fn blocked_sum(
     run: &mut Run,
     pass: &Pass,
-    got: &[f32],
+    (got, above): (&[f32], usize),
     (range, error): (std::ops::Range<usize>, ShadeError),
 ) -> Vec<Pair> {
     const EYE_M: usize = offset("ShadePush", "eye_m");
     const EXPONENT: usize = offset("ShadePush", "exponent");
     const LEAST_COSINE: usize = offset("ShadePush", "least_cosine");
+    const LEVELS: [usize; 3] = [
+        offset("ShadePush", "first_level"),
+        offset("ShadePush", "level_count"),
+        offset("ShadePush", "levels_per_log"),
+    ];
     let float = |offset: usize| f32::from_bits(pushed(pass, offset));
-    let texels: Vec<Rgb> =
-        run.floats(pass, "specular_tables").expect("read").chunks_exact(4).map(rgb).collect();
-    let [peaks, nodes] = run.extent(pass, "specular_tables");
-    let slices = slices(run.border(), float(EXPONENT).into(), [peaks, nodes]);
-    let tables = Tables { slices, texels: &texels };
+    let is_map = constant(pass, "specular_is_map") == 1;
+    let levels = is_map.then(|| Levels::of(run, pass, LEVELS));
+    let phong = run.scene.surface.specular.clone().expect("specular");
+    // Tables and least cosine of each level.
+    let all: Vec<_> = match &levels {
+        None => {
+            let [peaks, _] = run.extent(pass, "specular_tables");
+            let of = table(run, pass, float(EXPONENT).into(), [0, peaks]);
+            vec![(of, f64::from(float(LEAST_COSINE)))]
+        }
+        Some(levels) => (0..levels.count())
+            .map(|i| {
+                let Level { exponent, least_cosine, peaks, .. } = levels.level(i);
+                (table(run, pass, exponent, peaks), least_cosine)
+            })
+            .collect(),
+    };
     let eye_m = [0, 1, 2, 3].map(|i| f64::from(float(EYE_M + 4 * i)));
     let [cols, _] = run.size();
     let turned = 2.0 * error.normal() + 20.0 * EPSILON;
     let off = [turned, error.lowest_slope()];
-    let least = f64::from(float(LEAST_COSINE));
     let first = range.start;
     run.swept(range.clone(), fuse_of(pass), |swept| {
         let mut pairs = Vec::new();
         for (i, got) in got.chunks_exact(4).enumerate() {
             let (col, row) = ((i % cols) as i32, (i / cols) as i32);
             let view = view_from(&swept.heights, eye_m, i);
+            let PhongSpecular { exponent, scale } = phong.at(i);
+            let level = levels.as_ref().map_or(0, |levels| levels.place(exponent.into()).1[above]);
+            let ((slices, texels), least) = &all[level];
+            let tables = Tables { slices: *slices, texels };
             let mut sum = Tabulated::default();
             swept.add_all([col, row], true, |k, azimuth, lowest, normal| {
+                // Nothing is summed where nothing is reflected.
+                if scale == 0.0 {
+                    return;
+                }
                 let mirror = mirrored(normal, view);
                 let hidden = (mirror, lowest);
                 // Nothing is hidden below the lowest elevation.
                 if slices.bottom_rad == 0.0 && lowest <= 0.0 {
                     return;
                 }
-                let one = blocked(&tables, (first + k, azimuth), hidden, least, off);
+                let one = blocked(&tables, (first + k, azimuth), hidden, *least, off);
                 sum.light += one.light;
                 sum.tolerance += one.tolerance;
             });
