@@ -243,9 +243,13 @@ impl Memory {
         self.allocator = None;
     }
 
-    /// Keeps all memory until the device is destroyed: for images and buffers that may still be in use.
-    pub(crate) fn leak(&mut self) {
-        std::mem::forget(self.allocator.take());
+    /// Unless it has ended, says whose it is and keeps all of it until the device is destroyed: for images and buffers that
+    /// may still be in use.
+    pub(crate) fn leak(&mut self, owner: &str) {
+        if let Some(allocator) = self.allocator.take() {
+            eprintln!("ridgelight: {owner} was dropped without destroy(): its Vulkan objects stay");
+            std::mem::forget(allocator);
+        }
     }
 
     /// Frees what `make`, `image` or `buffer` returned. The device must be done with it.

@@ -76,7 +76,6 @@ pub struct Renderer {
     times_passes: bool,
     /// Formats that inputs may have on this device, besides the plan's.
     readable: Vec<vk::Format>,
-    destroyed: bool,
 }
 
 struct Slot {
@@ -164,7 +163,6 @@ impl Renderer {
             progress: vec![Progress::Pending; plan.passes.len()],
             times_passes: true,
             plan,
-            destroyed: false,
         };
         match renderer.make(slots.max(1)) {
             Ok(()) => Ok(renderer),
@@ -399,11 +397,6 @@ impl Renderer {
 
 impl Drop for Renderer {
     fn drop(&mut self) {
-        if !self.destroyed {
-            eprintln!(
-                "ridgelight: a renderer was dropped without destroy(): its Vulkan objects stay"
-            );
-            self.memory.leak();
-        }
+        self.memory.leak("a renderer");
     }
 }

@@ -76,7 +76,6 @@ pub struct ViewRenderer {
     render_passes: RenderPasses,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    destroyed: bool,
 }
 
 /// One frame in flight.
@@ -176,7 +175,6 @@ impl ViewRenderer {
             render_passes: RenderPasses::default(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
-            destroyed: false,
         };
         match renderer.make(curve, slots.max(1)) {
             Ok(()) => Ok(renderer),
@@ -233,12 +231,7 @@ impl ViewRenderer {
 
 impl Drop for ViewRenderer {
     fn drop(&mut self) {
-        if !self.destroyed {
-            eprintln!(
-                "ridgelight: a view renderer was dropped without destroy(): its Vulkan objects stay"
-            );
-            self.memory.leak();
-        }
+        self.memory.leak("a view renderer");
     }
 }
 

@@ -54,14 +54,7 @@ impl shaders::ShadePush {
             first_azimuth: batch.first,
             azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
-            eye_m: [0.0; 4],
-            colour: [0.0; 4],
-            exponent: 0.0,
-            least_cosine: 0.0,
-            relights: 0,
-            first_level: 0,
-            level_count: 0,
-            levels_per_log: 0.0,
+            ..bytemuck::Zeroable::zeroed()
         }
     }
 }

@@ -279,16 +279,10 @@ impl<'a> ActiveLights<'a> {
     /// Azimuths across a key light: [`KeyLight::slices`], or more for specular, which sets at most
     /// [`MOST_SPECULAR_AZIMUTHS`].
     fn key_azimuths(&self, key: &KeyLight, setting: u32) -> u32 {
-        key.slices(setting).max(self.specular_azimuths(key).min(MOST_SPECULAR_AZIMUTHS))
+        key.slices(setting).max(self.half_deviations(key.width_rad).min(MOST_SPECULAR_AZIMUTHS))
     }
 
-    /// Azimuths across a key light, each at most half as wide as the surface's narrowest lobe, whose standard deviation is
-    /// 1/√(n + 1) radians. The lobe's slice in the middle of a wedge then represents the wedge. 0 without specular.
-    fn specular_azimuths(&self, key: &KeyLight) -> u32 {
-        self.half_deviations(key.width_rad)
-    }
-
-    /// The same for the slices around a texel within a sphere light. The largest exponent, 10,000, needs 1,257: fewer than the
+    /// Slices around a texel within a sphere light, as wide as a key light's for specular. The largest exponent, 10,000, needs 1,257: fewer than the
     /// 2,048 of the largest `sun_azimuths`.
     pub(super) fn specular_slices_around(&self) -> u32 {
         self.half_deviations(TAU)
@@ -300,7 +294,8 @@ impl<'a> ActiveLights<'a> {
             .is_some_and(|specular| crate::passes::sun_specular::needs_vector(specular, sun))
     }
 
-    /// A width in halves of the standard deviation of the surface's narrowest lobe, 1/√(n + 1) radians, rounded up.
+    /// A width in halves of the standard deviation of the surface's narrowest lobe, 1/√(n + 1) radians, rounded up. The
+    /// lobe's slice in the middle of a wedge no wider represents the wedge. 0 without specular.
     fn half_deviations(&self, width_rad: f64) -> u32 {
         let narrowest = self.specular.map(|specular| f64::from(specular.largest().exponent));
         narrowest.map_or(0, |n| (2.0 * width_rad * (n + 1.0).sqrt()).ceil() as u32)
@@ -318,7 +313,7 @@ impl<'a> ActiveLights<'a> {
         for (i, key) in &self.keys {
             let (number, count) = (i + 1, self.key_azimuths(key, quality.sun_azimuths));
             let slices = key.slices(quality.sun_azimuths);
-            if count < self.specular_azimuths(key) {
+            if count < self.half_deviations(key.width_rad) {
                 let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
                 notes.push(format!(
                     "key {number}: {count} slices; specular of exponents above {n:.0} needs more"

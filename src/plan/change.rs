@@ -139,6 +139,12 @@ mod tests {
         names
     }
 
+    /// Names of the passes that follow a plan, if only these inputs have new contents.
+    fn needed(after: &Plan, before: &Plan, changed: &[&str]) -> Vec<&'static str> {
+        let changed: Vec<_> = changed.iter().map(|name| after.find(name).unwrap()).collect();
+        names(after, &after.passes_after(before, &changed))
+    }
+
     /// Whether pass `i` must run because of those that do.
     fn follows(plan: &Plan, i: usize, runs: &[bool]) -> bool {
         let pass = &plan.passes[i];
@@ -205,7 +211,7 @@ mod tests {
         let texels = scene.lights.environment.as_ref().unwrap().texels().to_vec();
         scene.lights.environment = Some(Environment::new(32, 16, texels, 0.1).unwrap());
         let after = plan(&scene);
-        let needed = names(&after, &after.passes_after(&before, &[]));
+        let needed = needed(&after, &before, &[]);
         assert_eq!(needed, ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]);
     }
 
@@ -227,15 +233,16 @@ mod tests {
             let lattices = before.resources.iter().filter(|r| r.name.starts_with("lattice_"));
             let of_suns = |r: &&Resource| r.name.bytes().any(|b| b.is_ascii_digit());
             assert_eq!(lattices.filter(|r| !of_suns(r)).count(), 1);
-            let environment = before.find("environment").unwrap();
-            let needed = names(&before, &before.passes_after(&before, &[environment]));
-            assert_eq!(needed, ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]);
+            let of_environment = needed(&before, &before, &["environment"]);
+            assert_eq!(
+                of_environment,
+                ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]
+            );
             scene.lights.sky = Some([9.0, 1.0, 0.5]);
             scene.lights.suns[0].irradiance = [0.5; 3];
             let after = plan(&scene);
-            assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
-            let heights = after.find("heights").unwrap();
-            let needed = names(&after, &after.passes_after(&after, &[heights]));
+            assert_eq!(needed(&after, &before, &[]), ["light_resolve"]);
+            let needed = needed(&after, &after, &["heights"]);
             assert!(["sh_visibility", "sh_shade", "sun_shade"].iter().all(|n| needed.contains(n)));
             assert!(!needed.contains(&"env_rotation") && !needed.contains(&"light_matrix"));
         }
@@ -248,13 +255,9 @@ mod tests {
         scene.lights.suns[0].irradiance = [9.0; 3];
         let after = plan(&scene, true);
         // The picture is a sum that begins with its first light.
-        assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
-        let environment = after.find("environment").unwrap();
-        let needed = after.passes_after(&after, &[environment]);
-        assert_eq!(
-            names(&after, &needed),
-            ["env_wedges", "env_tables", "sky_shade", "light_resolve"]
-        );
+        assert_eq!(needed(&after, &before, &[]), ["light_resolve"]);
+        let needed = needed(&after, &after, &["environment"]);
+        assert_eq!(needed, ["env_wedges", "env_tables", "sky_shade", "light_resolve"]);
     }
 
     #[test]
@@ -312,16 +315,14 @@ mod tests {
     #[test]
     fn reused_lattices_are_swept_again() {
         let before = plan(&scene(), false);
-        let environment = before.find("environment").unwrap();
-        let needed = names(&before, &before.passes_after(&before, &[environment]));
+        let needed = needed(&before, &before, &["environment"]);
         assert!(needed.contains(&"horizon_sweep"), "{needed:?}");
     }
 
     #[test]
     fn a_new_field_under_still_light_keeps_its_tables() {
         let plan = plan(&scene(), true);
-        let heights = plan.find("heights").unwrap();
-        let needed = names(&plan, &plan.passes_after(&plan, &[heights]));
+        let needed = needed(&plan, &plan, &["heights"]);
         assert!(!needed.iter().any(|n| n.starts_with("env_")), "{needed:?}");
         assert!(needed.contains(&"horizon_sweep") && needed.contains(&"shadow_shade"));
     }
@@ -332,14 +333,13 @@ mod tests {
         let wanted = Picture { keeps_horizons: true, ..Picture::default() };
         let mut scene = scene();
         let before = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
-        let heights = before.find("heights").unwrap();
-        let needed = names(&before, &before.passes_after(&before, &[heights]));
+        let of_heights = needed(&before, &before, &["heights"]);
         for name in ["height_reduce", "height_expand", "pyramid_march"] {
-            assert!(needed.contains(&name), "{name}: {needed:?}");
+            assert!(of_heights.contains(&name), "{name}: {of_heights:?}");
         }
         scene.lights.suns[0].irradiance = [9.0; 3];
         let after = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
-        assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
+        assert_eq!(needed(&after, &before, &[]), ["light_resolve"]);
     }
 
     #[test]

@@ -130,27 +130,18 @@ fn paragraph(doc: &str, n: usize) -> String {
     part.map(|lines| lines.join(" ")).unwrap_or_default()
 }
 
-/// A value as text and back.
+/// A value whose [`Display`](std::fmt::Display) can be read again.
 pub(super) trait Text: Sized {
-    fn text(&self) -> String;
     fn parse(text: &str) -> Option<Self>;
 }
 
 impl Text for u32 {
-    fn text(&self) -> String {
-        self.to_string()
-    }
-
     fn parse(text: &str) -> Option<Self> {
         text.parse().ok()
     }
 }
 
 impl Text for f64 {
-    fn text(&self) -> String {
-        self.to_string()
-    }
-
     fn parse(text: &str) -> Option<Self> {
         text.parse().ok()
     }
@@ -194,10 +185,6 @@ macro_rules! words {
         }
 
         impl Text for $Enum {
-            fn text(&self) -> String {
-                self.name().to_owned()
-            }
-
             fn parse(text: &str) -> Option<Self> {
                 match text {
                     $( $word => Some($Enum::$Variant), )*
@@ -251,7 +238,7 @@ macro_rules! settings {
                 audience: Audience::$Audience,
                 values: $values,
                 doc: concat!($($doc, "\n"),*),
-                get: |quality| $of(&mut { *quality }).$field.text(),
+                get: |quality| $of(&mut { *quality }).$field.to_string(),
                 set: |quality, text| {
                     $of(quality).$field = Text::parse(text)?;
                     Some(())

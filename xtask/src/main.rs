@@ -68,20 +68,19 @@ fn gallery(root: &Path, data: &[&str]) -> Result<String, String> {
 fn performance(root: &Path) -> Result<String, String> {
     let json = "benches/results/performance.json";
     measure(root, "performance", &["-o", "docs/pictures/performance.svg", "--json", json])?;
-    cargo(
-        root,
-        &["run", "--release", "--quiet", "--package", "ridgelight-measure", "--", "pages"],
-    )?;
+    cargo(root, &[MEASURE.as_slice(), &["pages"]].concat())?;
     Ok("wrote docs/measured/performance.md\n".to_owned())
 }
+
+/// What runs the program that measures.
+const MEASURE: [&str; 6] = ["run", "--release", "--quiet", "--package", "ridgelight-measure", "--"];
 
 /// Builds the program and the one that calls it, and runs them.
 fn measure(root: &Path, name: &str, words: &[&str]) -> Result<(), String> {
     cargo(root, &["build", "--release", "--locked", "--package", "ridgelight-cli"])?;
     let program = target(root).join("release/ridgelight");
     let program = program.to_str().ok_or("the target folder is no UTF-8")?;
-    let measure = ["run", "--release", "--quiet", "--package", "ridgelight-measure", "--"];
-    cargo(root, &[measure.as_slice(), &[name, program], words].concat())
+    cargo(root, &[MEASURE.as_slice(), &[name, program], words].concat())
 }
 
 /// Runs cargo in the repository.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use super::brdf_harmonics::weighted;
 use ridgelight::scene::Directions;
 use ridgelight::{Error, Result};
 
@@ -157,7 +158,7 @@ impl Brdf {
     /// [`Facets`](super::Facets). It is a sum, not an integral: it is meaningless for a Phong lobe
     /// narrower than the spacing of the directions.
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
-        self.summed(|view| (light, view), projected_sr)
+        weighted((0..projected_sr.len()).map(|view| self.at(light, view)), projected_sr)
     }
 
     /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights,
@@ -167,17 +168,17 @@ impl Brdf {
     /// lobe counts for its density times a direction's solid angle, many times 1 at its centre and
     /// 0 beside it.
     pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
-        self.summed(|light| (light, view), projected_sr)
+        weighted((0..projected_sr.len()).map(|light| self.at(light, view)), projected_sr)
     }
 
-    fn summed(&self, pair: impl Fn(usize) -> (usize, usize), weights: &[f64]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (i, weight) in weights.iter().enumerate() {
-            let (light, view) = pair(i);
-            let value = self.at(light, view);
-            (0..3).for_each(|c| sum[c] += value[c] * weight);
+    /// Fails unless the table is one over `angles`.
+    pub(crate) fn check_angles(&self, angles: Angles) -> Result<()> {
+        let (own, count) = (self.directions.len(), angles.count());
+        if own == count {
+            return Ok(());
         }
-        sum
+        let found = format!("{own} directions");
+        Err(Error::setting("angles of a table", found, count.to_string()))
     }
 
     /// Departure from reciprocity: rms of half the difference when light and view are exchanged,

@@ -35,10 +35,7 @@ impl BrdfHarmonics {
     /// An order outside [1..6]; fewer angles than harmonics; a table over other angles.
     pub fn of(table: &Brdf, angles: Angles, order: usize, has_specular: bool) -> Result<Self> {
         let (count, terms) = (angles.count(), order.saturating_mul(order));
-        if table.directions().len() != count {
-            let found = format!("{} directions", table.directions().len());
-            return Err(Error::setting("angles of a table", found, count.to_string()));
-        }
+        table.check_angles(angles)?;
         if !(1..=MAX_ORDER).contains(&order) {
             let expected = format!("a whole number from 1 to {MAX_ORDER}");
             return Err(Error::setting("order of harmonics", order.to_string(), expected));
@@ -81,7 +78,7 @@ impl BrdfHarmonics {
 
     /// Value for unit vectors above horizontal; 1/sr.
     pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
-        weighted(&self.under(light), &evaluate(self.order, view))
+        weighted(self.under(light), &evaluate(self.order, view))
     }
 
     /// [`at`](Self::at) for each light in turn, towards all directions. Each direction's harmonics
@@ -90,7 +87,7 @@ impl BrdfHarmonics {
         let all: Vec<Vec<f64>> = directions.iter().map(|v| evaluate(self.order, *v)).collect();
         directions.iter().map(move |light| {
             let under = self.under(*light);
-            all.iter().map(|of_view| weighted(&under, of_view)).collect()
+            all.iter().map(|of_view| weighted(under.iter().copied(), of_view)).collect()
         })
     }
 
@@ -108,9 +105,9 @@ impl BrdfHarmonics {
 }
 
 /// Weighted sum of colours.
-fn weighted(colours: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
+pub(crate) fn weighted(colours: impl IntoIterator<Item = [f64; 3]>, weights: &[f64]) -> [f64; 3] {
     let mut sum = [0.0; 3];
-    for (colour, weight) in colours.iter().zip(weights) {
+    for (colour, weight) in colours.into_iter().zip(weights) {
         (0..3).for_each(|c| sum[c] += weight * colour[c]);
     }
     sum

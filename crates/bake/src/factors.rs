@@ -38,10 +38,7 @@ impl Factors {
     /// A count of 0, or above that of the angles; a table over other angles.
     pub fn of(table: &Brdf, angles: Angles, count: usize, has_specular: bool) -> Result<Self> {
         let size = angles.count();
-        if table.directions().len() != size {
-            let found = format!("{} directions", table.directions().len());
-            return Err(Error::setting("angles of a table", found, size.to_string()));
-        }
+        table.check_angles(angles)?;
         if !(1..=size).contains(&count) {
             return Err(Error::setting("factors", count.to_string(), format!("1 to {size}")));
         }

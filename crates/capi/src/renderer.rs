@@ -12,13 +12,7 @@ use crate::read::{SizeFirst, hand_out, handle, handle_mut, indices, read, read_a
 use crate::types::{RidgelightHost, RidgelightImage, host};
 
 /// A plan on a device. Any thread may use it, one at a time.
-pub struct RidgelightRenderer(Renderer);
-
-impl RidgelightRenderer {
-    pub(crate) fn get(&self) -> &Renderer {
-        &self.0
-    }
-}
+pub struct RidgelightRenderer(pub(crate) Renderer);
 
 /// Makes everything that a plan needs on a host's device, for `slots` frames in flight (0: 1); recording
 /// allocates nothing on it. `allocator` may be null: memory then comes in blocks of 4 MiB.
@@ -285,7 +279,7 @@ pub unsafe extern "C" fn ridgelight_passes_after(
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
     done(|| unsafe {
-        let renderer = handle(renderer, "renderer")?.get();
+        let renderer = &handle(renderer, "renderer")?.0;
         let inputs: Vec<_> = renderer.plan().inputs().map(|(id, _)| id).collect();
         let expected = format!("less than {}, the number of inputs", inputs.len());
         let input = |index: usize| {

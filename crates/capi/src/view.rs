@@ -320,7 +320,7 @@ pub unsafe extern "C" fn ridgelight_taken(
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
     done(|| unsafe {
-        let renderer = handle(renderer, "renderer")?.get();
+        let renderer = &handle(renderer, "renderer")?.0;
         let input = renderer.plan().inputs().nth(index as usize).map(|(_, r)| &r.name);
         let taken = input.and_then(|name| renderer.taken(name));
         let taken = taken

@@ -2,15 +2,17 @@
 
 /// The vertical keys of GeoTIFF (OGC 19-008r4, §7.5): CRS, citation, datum and unit.
 const VERTICAL_KEYS: std::ops::RangeInclusive<u16> = 4096..=4099;
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
+pub(crate) const MODEL_TYPE: u16 = 1024;
+pub(crate) const RASTER_TYPE: u16 = 1025;
 const GEODETIC_CRS: u16 = 2048;
-const PROJECTED_CRS: u16 = 3072;
+pub(crate) const PROJECTED_CRS: u16 = 3072;
 /// The keys of a geographic and of a projected reference system, and the citations among them.
 const HORIZONTAL_KEYS: [std::ops::RangeInclusive<u16>; 2] = [2048..=3071, 3072..=4095];
 const CITATIONS: [u16; 2] = [2049, 3073];
 
-const LINEAR_UNIT: u16 = 3076;
+pub(crate) const LINEAR_UNIT: u16 = 3076;
+/// The tag of keys that are floats.
+pub(crate) const KEY_DOUBLES: u16 = 34736;
 /// The EPSG code of the metre.
 const METRE: f64 = 9001.0;
 
@@ -78,8 +80,12 @@ impl GeoKeys {
 
     /// The EPSG code in a key: 32767 is a system that other keys define; above are private codes.
     fn code(&self, key: u16) -> Option<u16> {
-        let entry = self.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
-        Some(entry[3]).filter(|code| (1..32767).contains(code))
+        self.short(key).filter(|code| (1..32767).contains(code))
+    }
+
+    /// The value of a key that is one short, held in the entry itself.
+    pub(crate) fn short(&self, key: u16) -> Option<u16> {
+        self.entries.iter().find(|e| e[0] == key && e[1] == 0).map(|e| e[3])
     }
 
     /// The code or the name of the horizontal reference system.
@@ -133,7 +139,7 @@ impl GeoKeys {
             let at = usize::from(*value);
             let numbers = match *location {
                 0 => vec![f64::from(*value)],
-                34736 => self.doubles.get(at..at + usize::from(*count))?.to_vec(),
+                KEY_DOUBLES => self.doubles.get(at..at + usize::from(*count))?.to_vec(),
                 _ => return None,
             };
             (is_one && !CITATIONS.contains(key)).then_some((*key, numbers))

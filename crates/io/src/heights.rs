@@ -262,26 +262,6 @@ const WIDE_M: f64 = 10_000.0;
 /// Beyond it the drop is no longer that of a parabola.
 const FLAT_M: f64 = 1_000_000.0;
 
-/// What a reader of results should know about a field's voids: notes and warnings.
-fn about(field: &HeightField) -> [Vec<String>; 2] {
-    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
-    if let Some(voids) = field.voids() {
-        let share = voids.iter().filter(|v| **v).count() as f64 / voids.len() as f64;
-        let text = format!(
-            "{:.3} % of the grid points are voids; their heights are filled from those around them, their results left out",
-            100.0 * share
-        );
-        if share >= 0.5 {
-            warnings.push(text + "; half of the field or more is empty");
-        } else {
-            notes.push(
-                text + "; for results there, fill them first: `gdal_fillnodata.py in.tif out.tif`",
-            );
-        }
-    }
-    [notes, warnings]
-}
-
 fn check(options: &HeightOptions) -> Result<()> {
     if let Some(cell) = options.cell_m
         && !cell.iter().all(|c| (1e-12..=1e12).contains(c))
@@ -338,8 +318,18 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
         }
         other => other,
     })?;
-    let [more_notes, more_warnings] = about(&field);
-    notes.extend(more_notes);
-    warnings.extend(more_warnings);
+    if let Some(voids) = field.voids() {
+        let share = voids.iter().filter(|v| **v).count() as f64 / voids.len() as f64;
+        let text = format!(
+            "{:.3} % of the grid points are voids; their heights are filled from those around them, their results left out",
+            100.0 * share
+        );
+        if share >= 0.5 {
+            warnings.push(text + "; half of the field or more is empty");
+        } else {
+            let hint = "; for results there, fill them first: `gdal_fillnodata.py in.tif out.tif`";
+            notes.push(text + hint);
+        }
+    }
     Ok(FieldFile { field, georeference, stored, notes, warnings })
 }

@@ -187,6 +187,11 @@ pub(crate) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<
     Ok(values)
 }
 
+/// A text of a file for messages: its first characters.
+pub(crate) fn shortened(text: &str, most: usize) -> String {
+    text.chars().filter(|c| !c.is_control()).take(most).collect()
+}
+
 /// A decoder's error as the `found` of a message: one line, no full stop.
 pub(crate) fn complaint(error: impl std::fmt::Display) -> String {
     let text = error.to_string().replace(|c: char| c.is_control(), " ");

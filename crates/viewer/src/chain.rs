@@ -75,7 +75,7 @@ impl Chain {
         };
         let lacks = |what: &str| Error::Device {
             doing: "showing pictures in a window".into(),
-            reason: format!("{} {what}", gpu_name(gpu)),
+            reason: format!("{} {what}", gpu.report().name),
         };
         let format = FORMATS.iter().find(is_taken);
         let format = format.ok_or_else(|| lacks("shows none of 8 bits a colour"))?.0;
@@ -175,10 +175,6 @@ impl Chain {
             swapchains.destroy_swapchain(self.swapchain, None);
         }
     }
-}
-
-fn gpu_name(gpu: &Headless) -> &str {
-    &gpu.report().name
 }
 
 #[cfg(test)]

@@ -240,9 +240,7 @@ impl Screen {
     /// A device that is lost, a window that no longer exists.
     pub fn renew(&mut self) -> Result<()> {
         self.wait()?;
-        if let Some(chain) = self.chain.take() {
-            chain.end(&self.gpu, &self.swapchains);
-        }
+        self.end_chain();
         match self.gpu.surface() {
             Some((entry, instance, surface)) => surface.renew(entry, instance),
             None => Ok(()),
@@ -351,9 +349,7 @@ impl Drop for Screen {
         for drawer in self.drawers.drain(..) {
             drawer.end(&mut self.gpu);
         }
-        if let Some(chain) = self.chain.take() {
-            chain.end(&self.gpu, &self.swapchains);
-        }
+        self.end_chain();
         for mut slot in self.slots.drain(..) {
             slot.free(&mut self.gpu);
             slot.end(&self.gpu);

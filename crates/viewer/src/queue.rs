@@ -52,10 +52,15 @@ impl Screen {
     pub(super) fn give_up(&mut self, slot: usize) {
         // A lost device has finished with everything.
         let _ = self.wait();
+        self.end_chain();
+        self.slots[slot].give_up(&self.gpu);
+    }
+
+    /// Ends the window's pictures, with which the device is done.
+    pub(super) fn end_chain(&mut self) {
         if let Some(chain) = self.chain.take() {
             chain.end(&self.gpu, &self.swapchains);
         }
-        self.slots[slot].give_up(&self.gpu);
     }
 
     /// Runs a slot's commands, which draw into an acquired picture or only light a frame.

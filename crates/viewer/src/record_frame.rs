@@ -307,7 +307,7 @@ impl Screen {
         slot.settle(&self.gpu)?;
         let mapped = slot.readback.as_mut().expect("made by prepare").mapped();
         let pixels = mapped.as_chunks::<4>().0.iter().take(size[0] as usize * size[1] as usize);
-        Ok(pixels.map(|p| ordered(*p, swaps)).collect())
+        Ok(pixels.map(|&[r, g, b, a]| if swaps { [b, g, r, a] } else { [r, g, b, a] }).collect())
     }
 }
 
@@ -358,10 +358,6 @@ fn stage(
         to = after;
     }
     Ok(())
-}
-
-fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
-    if swaps { [b, g, r, a] } else { [r, g, b, a] }
 }
 
 impl Pane<'_> {

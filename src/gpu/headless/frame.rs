@@ -9,7 +9,7 @@ use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; freed by [`Headless::end`].
 pub struct Frame {
-    pub(in crate::gpu) renderer: Option<Renderer>,
+    pub(in crate::gpu) renderer: Renderer,
     pub(in crate::gpu) inputs: Vec<Owned>,
     /// Images of the outputs.
     #[doc(hidden)]
@@ -19,12 +19,12 @@ pub struct Frame {
 impl Frame {
     /// The plan that it draws.
     pub fn plan(&self) -> &Plan {
-        self.renderer.as_ref().expect("alive until ended").plan()
+        self.renderer.plan()
     }
 
     /// Calls [`Renderer::time_passes`].
     pub fn time_passes(&mut self, each: bool) {
-        self.renderer.as_mut().expect("alive until ended").time_passes(each);
+        self.renderer.time_passes(each);
     }
 }
 
@@ -103,12 +103,11 @@ impl Headless {
         let (host, pipelines) = (self.host(), self.pipelines.clone());
         let blocks = Box::new(Blocks::new(host)?);
         let mut frame = Frame {
-            renderer: Some(Renderer::sharing(host, plan, slots, pipelines, blocks)?),
+            renderer: Renderer::sharing(host, plan, slots, pipelines, blocks)?,
             inputs: Vec::new(),
             outputs: Vec::new(),
         };
-        let filled = self.fill(&mut frame, &inputs, &outputs, contents);
-        match filled {
+        match self.fill(&mut frame, &inputs, &outputs, contents) {
             Ok(()) => Ok(frame),
             Err(error) => {
                 self.end(frame);
@@ -182,7 +181,7 @@ impl Headless {
     /// # Errors
     /// As there.
     pub fn replace_plan(&mut self, frame: &mut Frame, plan: Plan) -> Result<Vec<usize>> {
-        frame.renderer.as_mut().expect("alive until ended").replace_plan(plan)
+        frame.renderer.replace_plan(plan)
     }
 
     /// Runs a frame once and waits. Returns the GPU time of each pass, or one total after [`Frame::time_passes`]`(false)`, where the device has timestamps.
@@ -222,7 +221,7 @@ impl Headless {
         record: impl FnOnce(&mut Renderer, vk::CommandBuffer, &[ImageArg], &[ImageArg]) -> Result<()>,
     ) -> Result<Vec<Timing>> {
         let (inputs, outputs) = (frame.inputs(), frame.outputs());
-        let renderer = frame.renderer.as_mut().expect("alive until ended");
+        let renderer = &mut frame.renderer;
         let mut is_recorded = false;
         let ran = self.run(|commands| {
             record(renderer, commands, &inputs, &outputs)?;
@@ -259,11 +258,9 @@ impl Headless {
     }
 
     /// Frees a frame.
-    pub fn end(&mut self, mut frame: Frame) {
-        if let Some(renderer) = frame.renderer.take() {
-            renderer.destroy();
-        }
-        for mut image in frame.inputs.drain(..).chain(frame.outputs.drain(..)) {
+    pub fn end(&mut self, frame: Frame) {
+        frame.renderer.destroy();
+        for mut image in frame.inputs.into_iter().chain(frame.outputs) {
             self.memory.free(&mut image.backed);
         }
     }

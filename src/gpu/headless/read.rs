@@ -13,7 +13,7 @@ use crate::{Error, Result};
 impl Frame {
     /// The frame's renderer, to record it into command buffers with others.
     pub fn renderer(&mut self) -> &mut Renderer {
-        self.renderer.as_mut().expect("alive until ended")
+        &mut self.renderer
     }
 
     /// The plan's inputs, in its order: in GENERAL, before and after.
@@ -30,7 +30,7 @@ impl Frame {
     fn handles(&self, id: ResourceId) -> Option<(vk::Image, vk::Buffer)> {
         let owner = self.plan().resources.get(id.0)?.owner;
         let backed = match owner {
-            Owner::Internal | Owner::InputBuffer => self.renderer.as_ref()?.internal(id)?,
+            Owner::Internal | Owner::InputBuffer => self.renderer.internal(id)?,
             Owner::Input | Owner::Output => {
                 let before = &self.plan().resources[..id.0];
                 let n = before.iter().filter(|r| r.owner == owner).count();

@@ -8,7 +8,7 @@ use super::super::pipelines::{descriptor_type, descriptors};
 use super::super::shaders::BindingKind;
 use super::super::timestamps::Timestamps;
 use super::{Renderer, Slot};
-use crate::graph::{Format, Kind, Owner, Resource, ResourceId};
+use crate::graph::{Format, Kind, Owner, Resource};
 use crate::plan::Plan;
 use crate::{Error, Result};
 
@@ -62,21 +62,6 @@ impl Renderer {
         memory.image_for(&resource.name, of, [width, height, layers], layered)
     }
 
-    fn make_tables(&mut self) -> Result<Vec<(ResourceId, Backed)>> {
-        let mut made = Vec::new();
-        for id in TABLES.into_iter().filter_map(|name| self.plan.find(name)) {
-            let resource = &self.plan.resources[id.0];
-            match self.memory.make(&resource.name, resource.kind, MemoryUse::Upload) {
-                Ok(backed) => made.push((id, backed)),
-                Err(error) => {
-                    made.iter_mut().for_each(|table| self.memory.free(&mut table.1));
-                    return Err(error);
-                }
-            }
-        }
-        Ok(made)
-    }
-
     /// Writes the plan's azimuths and constants where the slot does not hold the current ones.
     pub(super) fn write_tables(&mut self, slot: usize) {
         let Plan { azimuths, constants, .. } = &self.plan;
@@ -112,26 +97,27 @@ impl Renderer {
             }
             let name = format!("ridgelight, slot {number}");
             let timestamps = Timestamps::new(&self.host, &mut self.memory, &name, passes + 1)?;
-            let (tables, recorded, times_passes) = (Vec::new(), Vec::new(), true);
             self.slots.push(Slot {
                 sets: sets.to_vec(),
-                tables,
+                tables: Vec::new(),
                 is_current: false,
                 timestamps,
-                recorded,
-                times_passes,
+                recorded: Vec::new(),
+                times_passes: true,
             });
-            let tables = self.make_tables()?;
-            self.slots[number].tables = tables;
+            // Tables made before one that fails are freed with their slot.
+            for id in TABLES.into_iter().filter_map(|name| self.plan.find(name)) {
+                let resource = &self.plan.resources[id.0];
+                let table = self.memory.make(&resource.name, resource.kind, MemoryUse::Upload)?;
+                self.slots[number].tables.push((id, table));
+            }
         }
         Ok(())
     }
 
     pub(super) fn free(&mut self) {
-        for mut backed in self.resources.drain(..).flatten() {
-            self.memory.free(&mut backed);
-        }
-        for (_, _, mut backed) in self.unused.drain(..) {
+        let unused = self.unused.drain(..).map(|(_, _, backed)| backed);
+        for mut backed in self.resources.drain(..).flatten().chain(unused) {
             self.memory.free(&mut backed);
         }
         for mut slot in self.slots.drain(..) {
@@ -145,7 +131,6 @@ impl Renderer {
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
         std::mem::take(&mut self.pipelines).end(&self.host);
         self.memory.end();
-        self.destroyed = true;
     }
 }
 

@@ -129,6 +129,5 @@ impl ViewRenderer {
         let drawings = std::mem::take(&mut self.drawings);
         drawings.into_iter().flatten().for_each(|drawing| drawing.free(&self.host));
         self.memory.end();
-        self.destroyed = true;
     }
 }

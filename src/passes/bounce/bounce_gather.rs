@@ -63,13 +63,7 @@ impl Pyramids {
 
     /// Bindings of the height levels.
     pub(crate) fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
-        match self.height_images {
-            Some(pyramid_march::Images { stack: Some(stack), .. }) => vec![("height_stack", stack)],
-            Some(pyramid_march::Images { levels, table, stack: None }) => {
-                vec![("height_levels", levels), ("level_table", table)]
-            }
-            None => Vec::new(),
-        }
+        self.height_images.map_or_else(Vec::new, |images| images.bindings())
     }
 
     /// Bindings of the levels of exit radiance.

@@ -12,6 +12,15 @@ pub(crate) struct Images {
     pub stack: Option<ResourceId>,
 }
 
+impl Images {
+    pub(crate) fn bindings(&self) -> Vec<(&'static str, ResourceId)> {
+        match self.stack {
+            Some(stack) => vec![("height_stack", stack)],
+            None => vec![("height_levels", self.levels), ("level_table", self.table)],
+        }
+    }
+}
+
 /// Horizons from the levels, one sample per level.
 pub(crate) fn plan(
     builder: &mut Builder,
@@ -23,13 +32,7 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let mut bound = vec![("heights", heights), ("azimuths", azimuths), ("slopes", slopes)];
-    match images {
-        Some(Images { stack: Some(stack), .. }) => bound.push(("height_stack", *stack)),
-        Some(Images { levels, table, stack: None }) => {
-            bound.extend([("height_levels", *levels), ("level_table", *table)]);
-        }
-        None => {}
-    }
+    bound.extend(images.into_iter().flat_map(Images::bindings));
     let is_stack = pyramid.stored == Levels::Stack;
     // An own height at every level, once; then one per level and azimuth.
     let (own, far) = if is_stack { (1, 2) } else { (16, 16) };

@@ -261,14 +261,16 @@ pub fn scatter_inputs(
 ) -> Result<Vec<Vec<f32>>> {
     let Scene { field, surface, .. } = scene;
     points.check(field, surface.border)?;
+    let count = points.directions().count();
+    let differ = |found: String, expected: &str| {
+        Err(Error::setting("directions of the visible points", found, expected))
+    };
     let own = hash_text(points.directions());
     let wanted = plan.settings.iter().find(|(name, _)| name == "directions_hash");
     let wanted = wanted.map_or("a plan of scattered light", |(_, value)| value);
     if own != wanted {
-        let count = points.directions().count();
-        let found = format!("{count} with the hash {own}");
         let expected = format!("those of the plan, {wanted}: vectors and lowest height alike");
-        return Err(Error::setting("directions of the visible points", found, expected));
+        return differ(format!("{count} with the hash {own}"), &expected);
     }
     let grid_points = field.rows() * field.cols();
     if direct.len() != grid_points {
@@ -299,20 +301,14 @@ pub fn scatter_inputs(
     for (_, resource) in plan.inputs().filter(|(_, r)| r.name.starts_with("visible_points")) {
         let wanted = (resource.bytes() / 4) as usize;
         let Some((own, rest)) = words.split_at_checked(wanted) else {
-            let found = points.directions().count().to_string();
-            return Err(Error::setting(
-                "directions of the visible points",
-                found,
-                "those of the plan",
-            ));
+            return differ(count.to_string(), "those of the plan");
         };
         // Words travel as the bits of floats.
         all.push(own.iter().map(|word| f32::from_bits(*word)).collect());
         words = rest;
     }
     if !words.is_empty() {
-        let found = points.directions().count().to_string();
-        return Err(Error::setting("directions of the visible points", found, "those of the plan"));
+        return differ(count.to_string(), "those of the plan");
     }
     Ok(all)
 }

@@ -59,10 +59,6 @@ fn added_ms(program: &str) -> Result<f64> {
     }
 }
 
-fn is_bevy(program: &str) -> bool {
-    program.ends_with("/frames")
-}
-
 /// Takes one `HOST=CRATES=PROGRAM` per host. A program named `frames` is measured as Bevy's.
 pub fn run(mut args: Args) -> Outcome {
     let mut hosts = Vec::new();
@@ -95,7 +91,8 @@ pub fn run(mut args: Args) -> Outcome {
             }
         }
         for (row, (_, _, program)) in rows.iter_mut().zip(&hosts) {
-            row.push(if is_bevy(program) { added_ms(program)? } else { frame_ms(program, out)? });
+            let is_bevy = program.ends_with("/frames");
+            row.push(if is_bevy { added_ms(program)? } else { frame_ms(program, out)? });
         }
     }
     frames.into_iter().for_each(|frame| gpu.end(frame));

@@ -17,33 +17,26 @@ const QUIET: f64 = 0.3;
 const WAITS: usize = 60;
 
 /// Name and arguments of each report. Commas are between flags, semicolons in lists.
-pub const REPORTS: [(&str, &str); 10] = [
-    ("frame", "--size 1024,--azimuths 64,--fuse aimed-around"),
-    ("environment", "--size 1024,--azimuths 64,--fuse aimed-around,--env assets/sky_512x256.hdr"),
-    ("forms", "--size 1024,--azimuths 64,--forms,--passes FORMS"),
-    ("sizes", "--sizes 256;512;1024;2048;4096,--fuse aimed-around,--azimuth-list 64"),
-    ("azimuths", "--sizes 1024,--fuse aimed-around,--azimuth-list 8;16;32;64;128;256"),
-    (
-        "bounces0",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 0,--passes light_resolve",
-    ),
-    (
-        "bounces1",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 1,--passes light_resolve",
-    ),
-    (
-        "bounces2",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 2,--passes light_resolve",
-    ),
-    (
-        "bounces3",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 3,--passes light_resolve",
-    ),
-    (
-        "bounces4",
-        "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32,--bounces 4,--passes light_resolve",
-    ),
-];
+pub fn reports() -> Vec<(String, String)> {
+    let one = [
+        ("frame", "--size 1024,--azimuths 64,--fuse aimed-around"),
+        (
+            "environment",
+            "--size 1024,--azimuths 64,--fuse aimed-around,--env assets/sky_512x256.hdr",
+        ),
+        ("forms", "--size 1024,--azimuths 64,--forms,--passes FORMS"),
+        ("sizes", "--sizes 256;512;1024;2048;4096,--fuse aimed-around,--azimuth-list 64"),
+        ("azimuths", "--sizes 1024,--fuse aimed-around,--azimuth-list 8;16;32;64;128;256"),
+    ];
+    let bounces = |count: u32| {
+        let words =
+            "--size 512,--azimuths 64,--fuse aimed-around,--subsample 2,--bounce-azimuths 32";
+        let words = format!("{words},--bounces {count},--passes light_resolve");
+        (format!("bounces{count}"), words)
+    };
+    let one = one.map(|(name, words)| (name.to_owned(), words.to_owned()));
+    one.into_iter().chain((0..=4).map(bounces)).collect()
+}
 
 /// The forms that are compared with a scalar sweep.
 pub const FORMS: [&str; 6] = [
@@ -68,8 +61,8 @@ pub fn run(mut args: Args) -> Outcome {
     let scratch = PathBuf::from("out");
     std::fs::create_dir_all(&scratch)?;
     let mut all = json!({ "cpu": cpu(), "load": quiet_load()? });
-    for (name, words) in REPORTS {
-        let report = reported(&program, words, &scratch.join("performance.json"))?;
+    for (name, words) in reports() {
+        let report = reported(&program, &words, &scratch.join("performance.json"))?;
         for key in ["device", "driver", "commit"] {
             all[key] = report[key].clone();
         }

@@ -145,12 +145,7 @@ pub fn times(args: Args) -> Outcome {
         device(&gpu)
     );
     head("| light | exponent | diffuse ms | with specular ms | ratio |");
-    let sun = Sun {
-        azimuth_rad: f64::to_radians(-160.0),
-        elevation_rad: f64::to_radians(40.0),
-        diameter_rad: f64::to_radians(0.53),
-        irradiance: [3.0; 3],
-    };
+    let sun = inputs::sun(-160.0, 40.0, [3.0; 3]);
     let lights = [
         ("sky", Lights { sky: Some([1.0; 3]), ..Lights::default() }),
         ("environment", scene(&ground, 0.5, (1.0, 0.4)).lights),
@@ -188,12 +183,8 @@ fn suns(gpu: &mut Headless, ground: &(HeightField, Environment)) -> Outcome {
     for (wide, high) in [(0.53, 60.0), (5.0, 60.0), (0.53, 20.0), (5.0, 20.0)] {
         for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0] {
             let mut scene = scene(ground, 0.0, (exponent, 1.0));
-            let sun = Sun {
-                azimuth_rad: f64::to_radians(-160.0),
-                elevation_rad: f64::to_radians(high),
-                diameter_rad: f64::to_radians(wide),
-                irradiance: [3.0; 3],
-            };
+            let sun = inputs::sun(-160.0, high, [3.0; 3]);
+            let sun = Sun { diameter_rad: f64::to_radians(wide), ..sun };
             scene.lights = Lights { suns: vec![sun], ..Lights::default() };
             let [reference, deviation] = traced(gpu, &scene, 0, DIRECT_BATCHES)?;
             let noise = 100.0 * rms_of(&deviation) / mean(&reference);

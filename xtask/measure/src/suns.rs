@@ -3,7 +3,7 @@
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Picture};
-use ridgelight::scene::{Border, Fuse, HeightField, Lights, Method, Quality, Scene, Sun};
+use ridgelight::scene::{Border, Fuse, HeightField, Lights, Method, Quality, Scene};
 
 use crate::common::args::Args;
 use crate::common::frames::{device, drawn, error_of, frame, frames_in_turn, with_picture};
@@ -14,18 +14,12 @@ use crate::common::{Outcome, head, inputs, median};
 const ELEVATIONS: [f64; 4] = [6.0, 12.0, 25.0, 50.0];
 /// Compass degrees.
 const AZIMUTH: f64 = 115.0;
-const DIAMETER: f64 = 0.53;
 /// Frames of each setting, drawn in turn.
 const TURNS: usize = 15;
 
 fn scene(field: &HeightField, border: Border, elevation: f64) -> Scene {
-    let sun = Sun {
-        azimuth_rad: (90.0 - AZIMUTH).to_radians(),
-        elevation_rad: elevation.to_radians(),
-        diameter_rad: DIAMETER.to_radians(),
-        irradiance: [1.0; 3],
-    };
-    let lights = Lights { suns: vec![sun], ..Lights::default() };
+    let suns = vec![inputs::sun(90.0 - AZIMUTH, elevation, [1.0; 3])];
+    let lights = Lights { suns, ..Lights::default() };
     let mut scene = inputs::lit_by(field.clone(), lights);
     scene.surface.border = border;
     scene
@@ -57,7 +51,7 @@ pub fn run(mut args: Args) -> Outcome {
     let terrains = terrains(args.folder().as_deref(), SIDES)?;
     let mut gpu = args.open()?;
     println!(
-        "{}: a sun {DIAMETER}° wide, {} slices; RMSE against brute force in the same slices, without voids, times of frames as medians of {TURNS}, drawn in turn\n",
+        "{}: a sun 0.53° wide, {} slices; RMSE against brute force in the same slices, without voids, times of frames as medians of {TURNS}, drawn in turn\n",
         device(&gpu),
         Quality::default().sun_azimuths
     );

@@ -7,7 +7,7 @@ use std::ptr;
 
 use ash::vk;
 use ash::vk::Handle;
-use ridgelight::gpu::{Frame, Headless, HeadlessOptions, ImageArg};
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, ImageArg, Pixels};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{Camera, HeightField, Lens, Lights, Quality, Scene, Surface};
 use ridgelight_c::*;
@@ -84,6 +84,46 @@ pub(super) fn image(arg: &ImageArg) -> RidgelightImage {
     RidgelightImage { image: arg.image, view: arg.view, before, after, ..zeroed() }
 }
 
+pub(super) fn field() -> HeightField {
+    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+    assert_eq!(field.base_m(), 0.0, "offsets are heights");
+    field
+}
+
+/// A field under the sky of [`scene`].
+pub(super) fn under_sky(field: HeightField) -> Scene {
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    Scene { field, surface: Surface::default(), lights }
+}
+
+/// A scene as the library lights it.
+pub(super) fn drawn_by_rust(gpu: &mut Headless, scene: &Scene, wanted: Picture) -> Frame {
+    let planned = plan::picture(scene, &Quality::default(), &gpu.report().limits, wanted);
+    let planned = planned.expect("a plan");
+    let mut frame = gpu.frame(planned, &[scene.field.heights_m()]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    frame
+}
+
+/// The light of a scene, and its frame, which now has level ground and another light.
+pub(super) fn lit_by_rust(gpu: &mut Headless, scene: &Scene) -> (Frame, Pixels) {
+    let mut frame = drawn_by_rust(gpu, scene, Picture::default());
+    let right = gpu.pixels(&frame, 0).expect("pixels");
+    gpu.refill(&frame, 0, &[0.0; SIDE * SIDE]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
+    (frame, right)
+}
+
+/// Runs the commands that a function records.
+pub(super) fn submit(gpu: &Headless, record: impl FnOnce(vk::CommandBuffer)) {
+    let run = gpu.run(|commands| {
+        record(commands);
+        Ok(())
+    });
+    run.expect("run");
+}
+
 /// Memory that an engine gives: pieces of the device's, by key.
 struct Engine {
     device: ash::Device,
@@ -145,22 +185,10 @@ unsafe extern "C" fn free(user: *mut c_void, allocation: *const RidgelightAlloca
 #[test]
 fn an_engine_in_c_lends_its_memory_and_reads_times() {
     let (mut gpu, host) = device();
-    let heights = heights();
-    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None).expect("a field");
-    assert_eq!(field.base_m(), 0.0, "offsets are heights");
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let scene_of_rust = Scene { field, surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&scene_of_rust, &Quality::default(), &limits, Picture::default());
-    let planned = planned.expect("a plan");
-    let texels = scene_of_rust.field.heights_m();
-    let mut frame = gpu.frame(planned.clone(), &[texels]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    let right = gpu.pixels(&frame, 0).expect("pixels");
-    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
-    gpu.draw(&mut frame).expect("drawn");
-    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
-    gpu.refill(&frame, 0, texels).expect("the heights again");
+    let of_rust = under_sky(field());
+    let (frame, right) = lit_by_rust(&mut gpu, &of_rust);
+    gpu.refill(&frame, 0, of_rust.field.heights_m()).expect("the heights again");
+    let planned = frame.plan().clone();
 
     let lent = gpu.host().clone();
     // SAFETY: the instance is alive.
@@ -202,11 +230,9 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
         let mut count = passes;
         good(ridgelight_timings(renderer, 0, times.as_mut_ptr(), &mut count));
         assert_eq!(count, 0, "nothing has run");
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             good(ridgelight_record(renderer, commands, 0, &input, 1, &output, 1));
-            Ok(())
-        })
-        .expect("run");
+        });
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
         count = passes;
         good(ridgelight_timings(renderer, 0, times.as_mut_ptr(), &mut count));
@@ -223,7 +249,7 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
         // The library's own checks pass their message through, and nothing has been recorded.
         let setting = RidgelightResult::Setting;
         let wrong = RidgelightImage { format: vk::Format::R8_UNORM, ..input };
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             let record = |slot, input: &RidgelightImage, inputs, output: &RidgelightImage| {
                 ridgelight_record(renderer, commands, slot, input, inputs, output, 1)
             };
@@ -238,9 +264,7 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
                 RidgelightResult::Argument,
                 "output 0: struct_size",
             );
-            Ok(())
-        })
-        .expect("run");
+        });
         ridgelight_renderer_destroy(renderer);
         assert!((*user).held.is_empty());
     }
@@ -252,19 +276,9 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
 #[test]
 fn a_buffer_of_c_is_lit_as_an_image_is() {
     let (mut gpu, host) = device();
-    let heights = heights();
-    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None).expect("a field");
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let of_rust = Scene { field, surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+    let of_rust = under_sky(field());
+    let (frame, right) = lit_by_rust(&mut gpu, &of_rust);
     let texels = of_rust.field.heights_m();
-    let mut frame = gpu.frame(planned.expect("a plan"), &[texels]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    let right = gpu.pixels(&frame, 0).expect("pixels");
-    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
-    gpu.draw(&mut frame).expect("drawn");
-    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
     // Two texels between rows, one before the first.
     let mut rows = vec![f32::NAN; 1];
     texels.chunks(SIDE).for_each(|row| rows.extend(row.iter().chain(&[f32::NAN; 2])));
@@ -305,7 +319,7 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
             before: state,
             ..zeroed()
         };
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             let record = |input: &RidgelightImage| {
                 ridgelight_record(renderer, commands, 0, input, 1, &output, 1)
             };
@@ -314,9 +328,7 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
             let far = RidgelightImage { buffer_offset: 16, ..input };
             refused(record(&far), setting, "heights: bytes");
             good(record(&input));
-            Ok(())
-        })
-        .expect("run");
+        });
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
         ridgelight_renderer_destroy(renderer);
         ridgelight_plan_destroy(plan);
@@ -328,14 +340,8 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
 
 /// A field as the library lights it, and its view by a camera.
 pub fn view_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Camera) {
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
-    let planned = planned.expect("a plan");
-    let heights = scene.field.heights_m();
-    let mut frame = gpu.frame(planned.clone(), &[heights]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
+    let scene = under_sky(field.clone());
+    let frame = drawn_by_rust(gpu, &scene, Picture::default());
     let at = Camera {
         target_m: [11.0, 12.0, 1.0],
         azimuth_rad: 0.7,
@@ -344,7 +350,8 @@ pub fn view_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Ca
         lens: Lens::Perspective { fov_rad: 0.8 },
     };
     let options = ViewOptions { size: SIZE, samples: 1, ..ViewOptions::default() };
-    let view = View::new(&scene, &planned, &at, &options, &limits).expect("a view");
+    let view = View::new(&scene, frame.plan(), &at, &options, &gpu.report().limits);
+    let view = view.expect("a view");
     (frame, view, at)
 }
 
@@ -366,7 +373,7 @@ pub fn camera_of(at: &Camera) -> RidgelightCamera {
 #[test]
 fn a_camera_of_c_draws_the_bytes_of_rust() {
     let (mut gpu, host) = device();
-    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+    let field = field();
     let (frame, view_of_rust, at) = view_by_rust(&mut gpu, &field);
     let right = gpu.look(&frame, &view_of_rust, None).expect("a picture").radiance;
     let lent = gpu.host().clone();
@@ -411,7 +418,7 @@ fn a_camera_of_c_draws_the_bytes_of_rust() {
             ..zeroed()
         };
         for (slot, heights) in [(0, &of_heights), (1, &taken)] {
-            gpu.run(|commands| {
+            submit(&gpu, |commands| {
                 let record = |camera: *const RidgelightCamera, images: &RidgelightViewImages| {
                     ridgelight_view_record(view, commands, slot, camera, images)
                 };
@@ -431,9 +438,7 @@ fn a_camera_of_c_draws_the_bytes_of_rust() {
                 let of = RidgelightViewImages { heights, ..images };
                 good(record(if slot == 0 { ptr::null() } else { &camera }, &of));
                 target.copy(&lent, commands);
-                Ok(())
-            })
-            .expect("run");
+            });
             assert!(target.texels(&lent) == right, "slot {slot}");
             let mut times: Vec<RidgelightTiming> = (0..3).map(|_| zeroed()).collect();
             let mut count = 3;

@@ -7,21 +7,14 @@ use std::ptr;
 use ash::vk;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, View, ViewOptions};
-use ridgelight::scene::{
-    Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
-};
+use ridgelight::scene::{Albedo, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface};
 use ridgelight_c::*;
 
 use crate::abi::{
-    SIDE, camera_of, device, good, heights, image, refused, scene, view_by_rust, zeroed,
+    SIDE, camera_of, device, drawn_by_rust, field, good, image, lit_by_rust, refused, scene,
+    submit, under_sky, view_by_rust, zeroed,
 };
 use crate::target::{FORMAT, SIZE, Target};
-
-fn field() -> HeightField {
-    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
-    assert_eq!(field.base_m(), 0.0, "offsets are heights");
-    field
-}
 
 /// What shadow heights refuse, by code and by a word of the sentence.
 #[test]
@@ -67,22 +60,11 @@ fn c_shadow_heights_refuse_wrong_fields() {
 #[test]
 fn c_slices_match_the_whole_frame() {
     let (mut gpu, host) = device();
-    let field = field();
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let of_rust = Scene { field: field.clone(), surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
-    let planned = planned.expect("a plan");
-    let passes = planned.passes.len() as u32;
+    let of_rust = under_sky(field());
+    let (frame, right) = lit_by_rust(&mut gpu, &of_rust);
+    gpu.refill(&frame, 0, of_rust.field.heights_m()).expect("the heights again");
+    let passes = frame.plan().passes.len() as u32;
     assert!(passes > 2, "slices");
-    let texels = field.heights_m();
-    let mut frame = gpu.frame(planned, &[texels]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    let right = gpu.pixels(&frame, 0).expect("pixels");
-    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
-    gpu.draw(&mut frame).expect("drawn");
-    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
-    gpu.refill(&frame, 0, texels).expect("the heights again");
 
     let (input, output) = (image(&frame.inputs()[0]), image(&frame.outputs()[0]));
     let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
@@ -97,7 +79,7 @@ fn c_slices_match_the_whole_frame() {
             ridgelight_record_passes(renderer, commands, slot, &input, 1, &output, 1, at, count)
         };
         for pass in 0..passes {
-            gpu.run(|commands| {
+            submit(&gpu, |commands| {
                 let wrong: [(&[u32], &str); 4] = [
                     (&[passes], "pass: found"),
                     (&[pass, pass], "passes: found"),
@@ -112,9 +94,7 @@ fn c_slices_match_the_whole_frame() {
                     ridgelight_record_passes(renderer, commands, 0, &input, 1, &output, 1, none, 2);
                 refused(null, argument, "passes: found a null pointer, expected 2 indices");
                 good(record(commands, pass % 2, &[pass]));
-                Ok(())
-            })
-            .expect("run");
+            });
         }
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
 
@@ -129,11 +109,9 @@ fn c_slices_match_the_whole_frame() {
         refused(none_at_all, argument, "renderer: found a null pointer");
         assert_eq!(count, passes, "as it was");
         // Nothing is pending: the old plan has stayed, and a late pass may run alone.
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             good(record(commands, 0, &[passes - 1]));
-            Ok(())
-        })
-        .expect("run");
+        });
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
         good(ridgelight_replace_plan(renderer, plan, ptr::null_mut(), ptr::null_mut()));
         let mut due_room = vec![passes; 1 + passes as usize];
@@ -144,11 +122,9 @@ fn c_slices_match_the_whole_frame() {
         let (due, beyond) = due_room.split_at(count as usize);
         assert!(due.iter().all(|pass| *pass < passes) && beyond.iter().all(|b| *b == passes));
         let draw = |gpu: &mut Headless, passes: &[u32]| {
-            gpu.run(|commands| {
+            submit(gpu, |commands| {
                 good(record(commands, 0, passes));
-                Ok(())
-            })
-            .expect("run");
+            });
             gpu.pixels(&frame, 0).expect("pixels")
         };
         let changed = draw(&mut gpu, due);
@@ -179,11 +155,9 @@ fn c_slices_match_the_whole_frame() {
         let mut times: Vec<RidgelightTiming> = (0..passes).map(|_| zeroed()).collect();
         let mut timed = |each, commands: &[u32]| {
             good(ridgelight_time_passes(renderer, each));
-            gpu.run(|buffer| {
+            submit(&gpu, |buffer| {
                 good(record(buffer, 1, commands));
-                Ok(())
-            })
-            .expect("run");
+            });
             let mut count = passes;
             good(ridgelight_timings(renderer, 1, times.as_mut_ptr(), &mut count));
             let text = |t: &RidgelightTiming| CStr::from_ptr(t.label.as_ptr()).to_owned();
@@ -207,8 +181,7 @@ fn a_c_plinth_matches_rust() {
     let (mut gpu, host) = device();
     let field = field();
     let (frame, without, at) = view_by_rust(&mut gpu, &field);
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let of_rust = Scene { field, surface: Surface::default(), lights };
+    let of_rust = under_sky(field);
     let limits = gpu.report().limits;
     let options =
         ViewOptions { size: SIZE, samples: 1, plinth_base_m: Some(-9.0), ..ViewOptions::default() };
@@ -244,12 +217,10 @@ fn a_c_plinth_matches_rust() {
         let not_drawn = RidgelightCamera { has_plinth: 0, ..infinite };
         for (camera, picture) in [(older, &bare), (not_drawn, &bare), (camera, &right)] {
             good(make(&camera, &mut view));
-            gpu.run(|commands| {
+            submit(&gpu, |commands| {
                 good(ridgelight_view_record(view, commands, 0, &camera, &images));
                 target.copy(&of_device, commands);
-                Ok(())
-            })
-            .expect("run");
+            });
             assert!(target.texels(&of_device) == *picture);
             ridgelight_view_destroy(view);
         }
@@ -279,9 +250,7 @@ fn a_c_eye_matches_rust() {
     let limits = gpu.report().limits;
     let [right, above] = [Some(eye_m), None].map(|eye_m| {
         let wanted = Picture { eye_m, ..Picture::default() };
-        let plan = plan::picture(&of_rust, &Quality::default(), &limits, wanted).expect("a plan");
-        let mut frame = gpu.frame(plan, &[of_rust.field.heights_m()]).expect("a frame");
-        gpu.draw(&mut frame).expect("drawn");
+        let frame = drawn_by_rust(&mut gpu, &of_rust, wanted);
         let lit = gpu.pixels(&frame, 0).expect("pixels");
         gpu.end(frame);
         lit
@@ -321,11 +290,9 @@ fn a_c_eye_matches_rust() {
         unsafe {
             good(ridgelight_plan_create(&host, &of_c, ptr::null(), 0, 0, &mut plan));
             good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
-            gpu.run(|commands| {
+            submit(&gpu, |commands| {
                 good(ridgelight_record(renderer, commands, 0, &input, 1, &output, 1));
-                Ok(())
-            })
-            .expect("run");
+            });
             assert!(gpu.pixels(&frame, 0).expect("pixels") == *light);
             ridgelight_renderer_destroy(renderer);
             ridgelight_plan_destroy(plan);

@@ -4,12 +4,12 @@ use std::ffi::CStr;
 use std::ptr;
 
 use ash::vk;
-use ridgelight::plan::{self, Picture};
-use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{HeightField, Lights, Scene, Sun, Surface};
 use ridgelight_c::*;
 
 use crate::abi::{
-    SIDE, camera_of, device, good, heights, image, refused, scene, view_by_rust, zeroed,
+    SIDE, camera_of, device, field, good, heights, image, lit_by_rust, refused, scene, submit,
+    view_by_rust, zeroed,
 };
 use crate::target::{FORMAT, Input, Target};
 
@@ -78,7 +78,7 @@ fn voids_of_c_are_filled_and_masked() {
         good(ridgelight_plan_create(&host, &with_voids, ptr::null(), 0, 0, &mut plan));
         let none = ptr::null();
         good(ridgelight_view_create(&host, &with_voids, plan, &camera, FORMAT, 1, none, &mut view));
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             let images = RidgelightViewImages {
                 heights: &of_heights,
                 radiance: &of_light,
@@ -91,9 +91,7 @@ fn voids_of_c_are_filled_and_masked() {
             refused(record(&images), setting, "voids: found no image");
             good(record(&RidgelightViewImages { voids: &of_voids, ..images }));
             target.copy(&of_device, commands);
-            Ok(())
-        })
-        .expect("run");
+        });
         ridgelight_view_destroy(view);
         ridgelight_plan_destroy(plan);
     }
@@ -108,7 +106,6 @@ fn voids_of_c_are_filled_and_masked() {
 #[test]
 fn colours_of_c_come_on_the_device() {
     let (mut gpu, host) = device();
-    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
     let sun = Sun {
         azimuth_rad: 1.0,
         elevation_rad: 0.5,
@@ -116,17 +113,9 @@ fn colours_of_c_come_on_the_device() {
         irradiance: [3.0, 2.0, 1.0],
     };
     let lights = Lights { sky: Some([0.25, 0.5, 1.0]), suns: vec![sun], ..Lights::default() };
-    let of_rust = Scene { field, surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
-    let texels = of_rust.field.heights_m();
-    let mut frame = gpu.frame(planned.expect("a plan"), &[texels]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    let right = gpu.pixels(&frame, 0).expect("pixels");
-    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
-    gpu.draw(&mut frame).expect("drawn");
-    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
-    gpu.refill(&frame, 0, texels).expect("the heights again");
+    let of_rust = Scene { field: field(), surface: Surface::default(), lights };
+    let (frame, right) = lit_by_rust(&mut gpu, &of_rust);
+    gpu.refill(&frame, 0, of_rust.field.heights_m()).expect("the heights again");
     let colours = [0.25, 0.5, 1.0, 1.0, 3.0, 2.0, 1.0, 1.0];
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let lent = Input::new(&gpu, format, [2, 1], &bytes(&colours)).expect("an image");
@@ -145,11 +134,9 @@ fn colours_of_c_come_on_the_device() {
         good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
         let inputs = [image(&frame.inputs()[0]), image(&lent.arg())];
         let output = image(&frame.outputs()[0]);
-        gpu.run(|commands| {
+        submit(&gpu, |commands| {
             good(ridgelight_record(renderer, commands, 0, inputs.as_ptr(), 2, &output, 1));
-            Ok(())
-        })
-        .expect("run");
+        });
         ridgelight_renderer_destroy(renderer);
         ridgelight_plan_destroy(plan);
     }

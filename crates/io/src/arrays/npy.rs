@@ -55,7 +55,7 @@ impl<'a> Array<'a> {
                 (kind, usize::from(size - b'0'), order == b'>')
             }
             _ => {
-                let found: String = descr.chars().filter(|c| !c.is_control()).take(24).collect();
+                let found = open::shortened(descr, 24);
                 let expected = "integers (i1 to i8, u1 to u8) or floats (f2, f4, f8)";
                 return Err(wrong("header: descr", format!("the type {found}"), expected));
             }

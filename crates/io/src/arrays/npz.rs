@@ -13,18 +13,12 @@ type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 /// Members that hold heights, in order of preference; else the only 2-D array is used.
 const HEIGHTS: [&str; 4] = ["elevation", "heights", "height", "z"];
 
-/// # Errors
-/// Bytes that are no complete archive.
-fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
-    ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
-        Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
-    })
-}
-
 /// Heights with the cell size of the scalars `dx` and `dy`. `xmin` to `ymax` distinguish degrees
 /// from metres; `ymin` may be the northern one.
 pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
-    let mut archive = archive(path, bytes)?;
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+        Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
+    })?;
     let names: Vec<String> = archive
         .file_names()
         .filter_map(|n| n.ok().map(|n| n.into_owned()))
@@ -88,7 +82,7 @@ fn only_plane(path: &Path, archive: &mut Archive, held: usize, names: &[String])
     let mut found: Option<Raster> = None;
     for name in names {
         let member = member(path, archive, held, name)?;
-        let inside = format!("{}: ", printable(name));
+        let inside = format!("{}: ", open::shortened(name, 40));
         let Ok(array) = Array::parse(path, &inside, &member) else { continue };
         if array.shape.len() != 2 {
             continue;
@@ -105,7 +99,7 @@ fn only_plane(path: &Path, archive: &mut Archive, held: usize, names: &[String])
 /// A member's bytes. A claimed size beyond what the file could hold is refused, as is a member
 /// larger than its claim.
 fn member(path: &Path, archive: &mut Archive, held: usize, name: &str) -> Result<Vec<u8>> {
-    let place = printable(name);
+    let place = open::shortened(name, 40);
     let wrong =
         |found: String| Error::file(path, place.as_str(), found, "a stored or deflated array");
     let file = archive.by_name(name).map_err(|e| wrong(open::complaint(e)))?;
@@ -122,9 +116,4 @@ fn member(path: &Path, archive: &mut Archive, held: usize, name: &str) -> Result
         return Err(wrong(format!("more than the {claimed} bytes that it says")));
     }
     Ok(bytes)
-}
-
-/// A member's name for messages.
-fn printable(name: &str) -> String {
-    name.chars().filter(|c| !c.is_control()).take(40).collect()
 }

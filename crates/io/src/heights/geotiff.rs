@@ -1,8 +1,10 @@
 //! The GeoTIFF tags for the cell size (OGC 19-008r4), and GDAL's no-data tag.
 
-use crate::georeference::{GeoKeys, Georeference};
+use crate::georeference::{
+    GeoKeys, Georeference, KEY_DOUBLES, LINEAR_UNIT, MODEL_TYPE, PROJECTED_CRS, RASTER_TYPE,
+};
 use crate::heights::tif::Tiff;
-use crate::heights::{Cell, looks_like_degrees, projection, unit};
+use crate::heights::{Cell, Raster, looks_like_degrees, projection, unit};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -12,36 +14,14 @@ const PIXEL_SCALE: u16 = 33550;
 const TIEPOINT: u16 = 33922;
 const TRANSFORMATION: u16 = 34264;
 const KEY_DIRECTORY: u16 = 34735;
-const KEY_DOUBLES: u16 = 34736;
 const KEY_ASCII: u16 = 34737;
 const GDAL_METADATA: u16 = 42112;
 const GDAL_NODATA: u16 = 42113;
 
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
 const ANGULAR_UNIT: u16 = 2054;
-const LINEAR_UNIT: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
 const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNIT: u16 = 4099;
-const PROJECTED_CRS: u16 = 3072;
-
-/// Values of the tags.
-pub(crate) struct Geo {
-    pub cell: Cell,
-    /// Metres in a unit of the cells; 1 where the file states none.
-    pub cell_unit_m: f64,
-    /// Metres in a unit of height, where the file states one that is known.
-    pub unit_m: Option<f64>,
-    /// What is assumed of a unit that is not stated or not known.
-    pub unit_warning: Option<String>,
-    /// A height is the value times the first, plus the second.
-    pub scale: [f64; 2],
-    pub nodata: Option<f64>,
-    pub georeference: Option<Georeference>,
-    /// What is assumed.
-    pub warnings: Vec<String>,
-}
 
 /// Grid coordinates of a north-up raster.
 struct Grid {
@@ -50,44 +30,25 @@ struct Grid {
     origin: Option<[f64; 2]>,
 }
 
-/// The tags of a file, with scale, offset and unit of a band; bands count from 0.
-pub(crate) fn read(
-    path: &Path,
-    tiff: &mut Tiff,
-    rows: usize,
-    cols: usize,
-    band: usize,
-) -> Result<Geo> {
-    let nodata = nodata(path, tiff)?;
-    let scale = scale(path, tiff, band)?;
-    let keys = Keys::read(path, tiff)?;
+/// Sets what the tags of a file state of a raster, with scale, offset and unit of a band; bands count from 0.
+pub(crate) fn read(path: &Path, tiff: &mut Tiff, band: usize, raster: &mut Raster) -> Result<()> {
+    raster.nodata = nodata(path, tiff)?;
+    raster.scale = scale(path, tiff, band)?;
+    let keys = keys(path, tiff)?;
     let of_crs = keys.short(VERTICAL_CRS).and_then(vertical_unit);
-    let of_system = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
+    let of_system = length(path, &keys, VERTICAL_UNIT)?.or(of_crs);
     let name = unit_name(path, tiff, band)?;
     let of_band = name.as_deref().and_then(unit::metres);
-    let unit_m = of_band.or(of_system);
-    let mut warnings = Vec::new();
+    raster.unit_m = of_band.or(of_system);
     let about_name = name.and_then(|name| unit::warning(&name, of_band, of_system));
-    let mut unit_warning = None;
-    match unit_m {
-        Some(_) => warnings.extend(about_name),
-        None => unit_warning = about_name,
+    match raster.unit_m {
+        Some(_) => raster.warnings.extend(about_name),
+        None => raster.unit_warning = about_name,
     }
-    let Some(grid) = grid(path, tiff)? else {
-        return Ok(Geo {
-            cell: Cell::Unknown,
-            cell_unit_m: 1.0,
-            unit_m,
-            unit_warning,
-            scale,
-            nodata,
-            georeference: None,
-            warnings,
-        });
-    };
+    let Some(grid) = grid(path, tiff)? else { return Ok(()) };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
-    let span = [last(cols) * grid.cell[0], last(rows) * grid.cell[1]];
+    let span = [last(raster.cols) * grid.cell[0], last(raster.rows) * grid.cell[1]];
     let degrees = |is_guess: bool| -> Result<Cell> {
         let Some([_, north]) = grid.origin else {
             let expected = "the latitude of a grid in degrees";
@@ -95,8 +56,7 @@ pub(crate) fn read(
         };
         Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0, is_guess })
     };
-    let mut cell_unit_m = 1.0;
-    let cell = match keys.short(MODEL_TYPE) {
+    raster.cell = match keys.short(MODEL_TYPE) {
         Some(2) => match keys.short(ANGULAR_UNIT) {
             // EPSG: degree, degree (supplier to define representation).
             None | Some(9102 | 9122) => degrees(false)?,
@@ -106,7 +66,7 @@ pub(crate) fn read(
             }
         },
         // GDAL writes 32767 for a model of one's own.
-        Some(1 | 32767) if keys.copied(path, tiff).is_web_mercator() => {
+        Some(1 | 32767) if keys.is_web_mercator() => {
             let Some([_, north]) = grid.origin else {
                 let expected = "the northing of a grid in Web Mercator";
                 return Err(wrong(path, TIEPOINT, "nothing", expected));
@@ -115,11 +75,12 @@ pub(crate) fn read(
         }
         Some(1) => {
             let of_crs = keys.short(PROJECTED_CRS).and_then(projection::unit_m);
-            cell_unit_m = keys.length(path, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
-            if cell_unit_m != 1.0 && unit_m.is_none() {
-                unit_warning.get_or_insert_with(|| unit::of_cells(cell_unit_m));
+            let unit_m = length(path, &keys, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
+            if unit_m != 1.0 && raster.unit_m.is_none() {
+                raster.unit_warning.get_or_insert_with(|| unit::of_cells(unit_m));
             }
-            Cell::Metres(grid.cell.map(|c| c * cell_unit_m))
+            raster.cell_unit_m = unit_m;
+            Cell::Metres(grid.cell.map(|c| c * unit_m))
         }
         None | Some(0 | 32767) => match grid.origin {
             Some([west, north])
@@ -139,20 +100,20 @@ pub(crate) fn read(
             return Err(Error::file(path, place, format!("model type {model}"), expected));
         }
     };
-    let georeference = georeference_of(path, tiff, &grid, &keys);
-    Ok(Geo { cell, cell_unit_m, unit_m, unit_warning, scale, nodata, georeference, warnings })
+    raster.georeference = grid.georeference(keys);
+    Ok(())
 }
 
 /// Georeference of a file, if it has one.
 pub(crate) fn georeference(path: &Path, tiff: &mut Tiff) -> Result<Option<Georeference>> {
     let Some(grid) = grid(path, tiff)? else { return Ok(None) };
-    let keys = Keys::read(path, tiff)?;
-    Ok(georeference_of(path, tiff, &grid, &keys))
+    Ok(grid.georeference(keys(path, tiff)?))
 }
 
-fn georeference_of(path: &Path, tiff: &mut Tiff, grid: &Grid, keys: &Keys) -> Option<Georeference> {
-    let origin = grid.origin?;
-    Some(Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)))
+impl Grid {
+    fn georeference(self, keys: GeoKeys) -> Option<Georeference> {
+        Some(Georeference::at_origin(self.origin?, self.cell, keys))
+    }
 }
 
 /// Metres in the unit of a vertical coordinate reference system of the EPSG registry (v10.076), `None` for private
@@ -261,18 +222,13 @@ fn item(metadata: &str, band: usize, role: &str) -> Option<String> {
     Some(text)
 }
 
-/// A text of a file, shortened for messages.
-fn shortened(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(24).collect()
-}
-
 /// Scale and offset of a band.
 pub(crate) fn scale(path: &Path, tiff: &mut Tiff, band: usize) -> Result<[f64; 2]> {
     let text = metadata(path, tiff)?;
     let number = |role: &str, default: f64| {
         let Some(body) = item(&text, band, role) else { return Ok(default) };
         let number = body.parse().ok().filter(|n: &f64| n.is_finite());
-        let short = shortened(&body);
+        let short = open::shortened(&body, 24);
         let expected = "numbers for scale and offset";
         number.ok_or_else(|| wrong(path, GDAL_METADATA, format!("{role} {short:?}"), expected))
     };
@@ -287,7 +243,7 @@ pub(crate) fn band_name(path: &Path, tiff: &mut Tiff, band: usize) -> Result<Opt
 /// The name of a band's unit, `None` where the file states none.
 fn unit_name(path: &Path, tiff: &mut Tiff, band: usize) -> Result<Option<String>> {
     let name = item(&metadata(path, tiff)?, band, "unittype");
-    Ok(name.map(|name| shortened(&name)).filter(|name| !name.is_empty()))
+    Ok(name.map(|name| open::shortened(&name, 24)).filter(|name| !name.is_empty()))
 }
 
 pub(crate) fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
@@ -296,79 +252,60 @@ pub(crate) fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
     let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };
     let text = value.into_string().map_err(|e| wrong(open::complaint(e)))?;
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
-    let short = shortened(text);
+    let short = open::shortened(text, 24);
     text.parse().map(Some).map_err(|_| wrong(format!("{short:?}")))
 }
 
-/// The GeoKey directory: entries of four shorts (key, location, count, value).
-struct Keys {
-    entries: Vec<[u16; 4]>,
-    doubles: Vec<f64>,
+/// All keys of the GeoKey directory, for files to write too. Text that cannot be read is left out with its keys.
+fn keys(path: &Path, tiff: &mut Tiff) -> Result<GeoKeys> {
+    let expected = "GeoKeys: four shorts each";
+    let shorts = match find(path, tiff, KEY_DIRECTORY, expected)? {
+        Some(value) => value
+            .into_u16_vec()
+            .map_err(|e| wrong(path, KEY_DIRECTORY, open::complaint(e), expected))?,
+        None => Vec::new(),
+    };
+    let doubles = doubles(path, tiff, KEY_DOUBLES)?.unwrap_or_default();
+    let text = find(path, tiff, KEY_ASCII, "text").ok().flatten();
+    let ascii = text.and_then(|text| text.into_string().ok()).unwrap_or_default();
+    let ascii = ascii.trim_end_matches('\0').to_owned();
+    let is_held = |[_, location, count, value]: &[u16; 4]| {
+        let end = usize::from(*count) + usize::from(*value);
+        match *location {
+            0 => true,
+            KEY_DOUBLES => end <= doubles.len(),
+            KEY_ASCII => end <= ascii.len() + 1,
+            // Some writers keep shorts behind the entries.
+            _ => false,
+        }
+    };
+    // The first four are version and count.
+    let (entries, _) = shorts.as_chunks::<4>();
+    let entries = entries.iter().skip(1).copied().filter(is_held).collect();
+    Ok(GeoKeys { entries, doubles, ascii })
 }
 
-impl Keys {
-    fn read(path: &Path, tiff: &mut Tiff) -> Result<Self> {
-        let expected = "GeoKeys: four shorts each";
-        let shorts = match find(path, tiff, KEY_DIRECTORY, expected)? {
-            Some(value) => value
-                .into_u16_vec()
-                .map_err(|e| wrong(path, KEY_DIRECTORY, open::complaint(e), expected))?,
-            None => Vec::new(),
-        };
-        // The first four are version and count.
-        let (chunks, _) = shorts.as_chunks::<4>();
-        let entries = chunks.iter().skip(1).copied().collect();
-        let doubles = doubles(path, tiff, KEY_DOUBLES)?.unwrap_or_default();
-        Ok(Self { entries, doubles })
-    }
-
-    /// All keys, for files to write. Text that cannot be read is left out with its keys.
-    fn copied(&self, path: &Path, tiff: &mut Tiff) -> GeoKeys {
-        let text = find(path, tiff, KEY_ASCII, "text").ok().flatten();
-        let ascii = text.and_then(|text| text.into_string().ok()).unwrap_or_default();
-        let ascii = ascii.trim_end_matches('\0').to_owned();
-        let is_held = |[_, location, count, value]: &[u16; 4]| {
-            let end = usize::from(*count) + usize::from(*value);
-            match *location {
-                0 => true,
-                KEY_DOUBLES => end <= self.doubles.len(),
-                KEY_ASCII => end <= ascii.len() + 1,
-                // Some writers keep shorts behind the entries.
-                _ => false,
-            }
-        };
-        let entries = self.entries.iter().copied().filter(is_held).collect();
-        GeoKeys { entries, doubles: self.doubles.clone(), ascii }
-    }
-
-    /// The value of a key that is one short, held in the entry itself.
-    fn short(&self, key: u16) -> Option<u16> {
-        self.entries.iter().find(|e| e[0] == key && e[1] == 0).map(|e| e[3])
-    }
-
-    /// Metres in the EPSG unit of length of a key; `None` where the key is absent.
-    fn length(&self, path: &Path, key: u16) -> Result<Option<f64>> {
-        let user_size = || {
-            let entry =
-                self.entries.iter().find(|e| e[0] == LINEAR_UNIT_SIZE && e[1] == KEY_DOUBLES)?;
-            let size = *self.doubles.get(usize::from(entry[3]))?;
-            (size.is_finite() && size > 0.0).then_some(size)
-        };
-        let metres = match self.short(key) {
-            None => return Ok(None),
-            Some(9001) => Some(1.0),
-            Some(9002) => Some(unit::FOOT_M),
-            Some(9003) => Some(unit::US_SURVEY_FOOT_M),
-            Some(9036) => Some(1000.0),
-            Some(32767) if key == LINEAR_UNIT => user_size(),
-            // Undefined.
-            Some(0) => Some(1.0),
-            Some(_) => None,
-        };
-        metres.map(Some).ok_or_else(|| {
-            let unit = self.short(key).unwrap_or_default();
-            let expected = "9001 (metre), 9002 (foot), 9003 (US survey foot) or 9036 (kilometre)";
-            Error::file(path, format!("GeoKey {key}"), format!("unit {unit}"), expected)
-        })
-    }
+/// Metres in the EPSG unit of length of a key; `None` where the key is absent.
+fn length(path: &Path, keys: &GeoKeys, key: u16) -> Result<Option<f64>> {
+    let Some(unit) = keys.short(key) else { return Ok(None) };
+    let user_size = || {
+        let is_size = |e: &&[u16; 4]| e[0] == LINEAR_UNIT_SIZE && e[1] == KEY_DOUBLES;
+        let entry = keys.entries.iter().find(is_size)?;
+        let size = *keys.doubles.get(usize::from(entry[3]))?;
+        (size.is_finite() && size > 0.0).then_some(size)
+    };
+    let metres = match unit {
+        9001 => Some(1.0),
+        9002 => Some(unit::FOOT_M),
+        9003 => Some(unit::US_SURVEY_FOOT_M),
+        9036 => Some(1000.0),
+        32767 if key == LINEAR_UNIT => user_size(),
+        // Undefined.
+        0 => Some(1.0),
+        _ => None,
+    };
+    metres.map(Some).ok_or_else(|| {
+        let expected = "9001 (metre), 9002 (foot), 9003 (US survey foot) or 9036 (kilometre)";
+        Error::file(path, format!("GeoKey {key}"), format!("unit {unit}"), expected)
+    })
 }

@@ -1,6 +1,6 @@
 //! Projected coordinate reference systems of the EPSG registry: their unit, and where true north is.
 
-use crate::georeference::{GeoKeys, Georeference};
+use crate::georeference::{GeoKeys, Georeference, PROJECTED_CRS};
 use proj4rs::{Proj, transform::transform};
 
 /// A smaller angle gets no note: a fifth of the sun's diameter.
@@ -110,7 +110,7 @@ pub(super) fn scale_warning(
 
 /// A warning about a projected system whose convergence and scale are unknown. With `has_cell` the cells are the user's.
 pub(super) fn unknown_warning(at: &Georeference, has_cell: bool) -> Option<String> {
-    let states_projection = at.keys.entries.iter().any(|e| e[0] == 3072);
+    let states_projection = at.keys.entries.iter().any(|e| e[0] == PROJECTED_CRS);
     let code = projected_code(&at.keys);
     if !states_projection || at.keys.is_web_mercator() || code.and_then(systems).is_some() {
         return None;
@@ -142,7 +142,7 @@ pub(super) fn north_note(at: &Georeference, rows: usize, cols: usize) -> Option<
 }
 
 fn projected_code(keys: &GeoKeys) -> Option<u16> {
-    keys.epsg().filter(|code| keys.entries.iter().any(|e| e[0] == 3072 && e[3] == *code))
+    keys.epsg().filter(|code| keys.entries.iter().any(|e| e[0] == PROJECTED_CRS && e[3] == *code))
 }
 
 #[cfg(test)]

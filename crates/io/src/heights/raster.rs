@@ -1,6 +1,6 @@
 //! A decoded grid: values, cells and position, before they become a height field.
 
-use super::{HeightOptions, unit};
+use super::HeightOptions;
 use crate::georeference::Georeference;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -200,7 +200,8 @@ impl Raster {
     pub fn cell_notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.cell_unit_m != 1.0 {
-            notes.push(unit::cell_note(self.cell_unit_m));
+            let unit_m = self.cell_unit_m;
+            notes.push(format!("cells are in units of {unit_m} m and become metres"));
         }
         let Some((latitude, cell)) = self.cell.degrees() else { return notes };
         let [east, north] = metres_a_degree(latitude);

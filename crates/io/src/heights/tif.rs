@@ -200,14 +200,11 @@ impl<'a> Image<'a> {
             let held = lengths.get(index as usize).map_or(0, |n| *n as usize);
             open::plausible(path, "a strip or tile", claimed, held, ratio(self.method))?;
             let values = if self.method == LZW {
-                let samples = self.samples;
-                let [cols, rows] = [target.inside, target.lines];
-                let bits = self.bits;
                 let layout = lzw::Layout {
                     width,
-                    inside: [cols, rows],
-                    samples,
-                    bits,
+                    inside: [target.inside, target.lines],
+                    samples: self.samples,
+                    bits: self.bits,
                     format,
                     predictor,
                     is_big_endian,
@@ -224,12 +221,13 @@ impl<'a> Image<'a> {
             };
             single = matches!(values, DecodingResult::F16(_) | DecodingResult::F32(_));
             let needed = target.inside * target.lines * stride;
-            if length(&values) < needed {
-                let found = format!("{} values in a strip or tile of {needed}", length(&values));
-                return Err(wrong(found));
-            }
             for (plane, first) in planes.iter_mut().zip(first..) {
-                each(&values, first, stride, |i, value| target.set(plane, i, of(value)));
+                let set = |i, value| target.set(plane, i, of(value));
+                let count = each(&values, first, stride, set);
+                if count < needed {
+                    let found = format!("{count} values in a strip or tile of {needed}");
+                    return Err(wrong(found));
+                }
             }
         }
         Ok((planes, single))
@@ -293,23 +291,15 @@ pub(super) fn heights(
     let mut image = Image::open(path, bytes)?;
     let (band, note) = image.band(wanted)?;
     let (rows, cols) = (image.rows, image.cols);
-    let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
-    let empty = geo.nodata.unwrap_or(0.0);
-    let is_8_bit = image.bits == 8;
     let mut raster = Raster {
         data_type: image.type_name(),
-        cell: geo.cell,
-        cell_unit_m: geo.cell_unit_m,
-        unit_m: geo.unit_m,
-        unit_warning: geo.unit_warning,
-        scale: geo.scale,
-        nodata: geo.nodata,
-        is_8_bit,
-        georeference: geo.georeference,
+        is_8_bit: image.bits == 8,
         notes: note.into_iter().collect(),
-        warnings: mask_warning(path, bytes).into_iter().chain(geo.warnings).collect(),
+        warnings: mask_warning(path, bytes).into_iter().collect(),
         ..Raster::bare(rows, cols, Vec::new())
     };
+    geotiff::read(path, &mut image.tiff, band, &mut raster)?;
+    let empty = raster.nodata.unwrap_or(0.0);
     sidecar.complete(&mut raster);
     let window = choose(raster.georeference.as_ref(), [rows, cols])?;
     if !window.is_empty() {
@@ -418,30 +408,20 @@ fn ratio(method: u16) -> u64 {
     }
 }
 
-fn length(values: &DecodingResult) -> usize {
-    match values {
-        DecodingResult::U8(v) => v.len(),
-        DecodingResult::U16(v) => v.len(),
-        DecodingResult::U32(v) => v.len(),
-        DecodingResult::U64(v) => v.len(),
-        DecodingResult::I8(v) => v.len(),
-        DecodingResult::I16(v) => v.len(),
-        DecodingResult::I32(v) => v.len(),
-        DecodingResult::I64(v) => v.len(),
-        DecodingResult::F16(v) => v.len(),
-        DecodingResult::F32(v) => v.len(),
-        DecodingResult::F64(v) => v.len(),
-    }
-}
-
-/// Calls `take` with the number and the value of every `stride`-th sample from `first` on.
-fn each(values: &DecodingResult, first: usize, stride: usize, mut take: impl FnMut(usize, f64)) {
+/// Calls `take` with the number and the value of every `stride`-th sample from `first` on; returns how many samples there are in all.
+fn each(
+    values: &DecodingResult,
+    first: usize,
+    stride: usize,
+    mut take: impl FnMut(usize, f64),
+) -> usize {
     macro_rules! widened {
-        ($samples:expr, $wide:expr) => {
+        ($samples:expr, $wide:expr) => {{
             for (i, value) in $samples.iter().skip(first).step_by(stride).enumerate() {
                 take(i, $wide(*value));
             }
-        };
+            $samples.len()
+        }};
     }
     match values {
         DecodingResult::U8(v) => widened!(v, f64::from),

@@ -32,11 +32,6 @@ pub(super) fn warning(name: &str, of_band: Option<f64>, of_system: Option<f64>) 
     }
 }
 
-/// The note on cells in another unit than metres.
-pub(super) fn cell_note(cell_m: f64) -> String {
-    format!("cells are in units of {cell_m} m and become metres")
-}
-
 /// The warning of heights without a unit over cells in another unit than metres.
 pub(super) fn of_cells(cell_m: f64) -> String {
     let is_unit = |unit_m: f64| (cell_m / unit_m - 1.0).abs() < 1e-9;

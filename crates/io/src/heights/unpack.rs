@@ -16,15 +16,14 @@ pub(super) fn unpacked(path: &Path, bytes: &[u8]) -> Result<Option<(PathBuf, Vec
     match extension.as_deref() {
         Some("gz") => {
             let inner = path.file_stem().unwrap_or_default();
-            Ok(Some((path.join(inner), gunzipped(path, bytes)?)))
+            Ok(Some((
+                path.join(inner),
+                all(path, MultiGzDecoder::new(bytes), "a whole gzip file")?,
+            )))
         }
         Some("zip") => unzipped(path, bytes).map(Some),
         _ => Ok(None),
     }
-}
-
-fn gunzipped(path: &Path, bytes: &[u8]) -> Result<Vec<u8>> {
-    all(path, MultiGzDecoder::new(bytes), "a whole gzip file")
 }
 
 fn unzipped(path: &Path, bytes: &[u8]) -> Result<(PathBuf, Vec<u8>)> {

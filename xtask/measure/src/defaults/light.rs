@@ -6,7 +6,7 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
 use ridgelight::scene::{
     Border, BounceEngine, Bounces, Fuse, HeightField, KeyLight, Lights, Lines, Method, Quality,
-    Scene, Sun,
+    Scene,
 };
 use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
@@ -167,13 +167,8 @@ pub fn all(folder: Option<&Path>) -> Result<Vec<Light>> {
         Light { name, kind: Kind::Environment, lights }
     };
     let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let sun = Sun {
-        azimuth_rad: 135_f64.to_radians(),
-        elevation_rad: 20_f64.to_radians(),
-        diameter_rad: 0.53_f64.to_radians(),
-        irradiance: [3.0; 3],
-    };
-    let low_sun = Lights { suns: vec![sun], sky: Some([0.1; 3]), ..Lights::default() };
+    let suns = vec![inputs::sun(135.0, 20.0, [3.0; 3])];
+    let low_sun = Lights { suns, sky: Some([0.1; 3]), ..Lights::default() };
     let mut all = vec![
         Light { name: "sky", kind: Kind::Sky, lights: sky() },
         under("bundled environment", inputs::sky(0.0)?),

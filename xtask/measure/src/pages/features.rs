@@ -7,7 +7,7 @@ use super::figures::{RESULTS, cells, fill, result, wrong};
 
 /// Mode | kind | file of benches/results | measured error. `{A;B@2}` is cell 2, counted from 0, of the first row
 /// that begins with the cells A and B; `{max@2}` the largest number of column 2; `{after TEXT}` the word
-/// after a text; `{trade TEXT}` the error of the line with these settings.
+/// after a text.
 const MODES: [&str; 17] = [
     "horizons: `--lines exact` | exact | accuracy_mt_washington_256 | worst horizon {exact@6}°",
     "horizons: `--method brute-force` | exact but for rounding | accuracy_mt_washington_256 | worst horizon {brute@6}°",
@@ -42,11 +42,6 @@ fn figure(file: &str, place: &str) -> Result<String> {
     if let Some(before) = place.strip_prefix("after ") {
         let rest = text.rsplit_once(before).ok_or_else(missing)?.1;
         return Ok(rest.split([' ', ',']).next().unwrap_or_default().to_owned());
-    }
-    if let Some(settings) = place.strip_prefix("trade ") {
-        let line = text.lines().find(|line| line.contains(settings));
-        let error = line.and_then(|line| line.split_whitespace().nth(2));
-        return error.map(str::to_owned).ok_or_else(missing);
     }
     let (begin, column) = place.split_once('@').ok_or_else(missing)?;
     let column: usize = column.parse().map_err(|_| missing())?;

@@ -342,11 +342,7 @@ fn goals() -> Result<String> {
 
 /// What `cargo measure auto` found of `render --max-error`.
 fn auto() -> Result<String> {
-    choices("auto")
-}
-
-fn choices(result: &str) -> Result<String> {
-    let figures = Figures::read(result)?;
+    let figures = Figures::read("auto")?;
     let mut of = figures.all.clone();
     for (key, value) in figures.all["summary"].as_object().into_iter().flatten() {
         of[key] = value.clone();

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::Result;
 use super::figures::{Figures, RESULTS, wrong};
-use crate::performance::{FORMS, REPORTS};
+use crate::performance::{FORMS, reports};
 
 /// Published figures of 1024 × 1024 points on a GTX 280: the place in TW10, the work, and the figure as it stands there.
 const PUBLISHED: [[&str; 3]; 3] = [
@@ -159,7 +159,8 @@ fn whole<'a>(report: &'a Value, mode: &str, figures: &Figures) -> Result<&'a Val
 
 /// The command of a report, as a user writes it.
 fn command(report: &str) -> String {
-    let words = REPORTS.iter().find(|(name, _)| *name == report).map_or("", |(_, words)| *words);
+    let found = reports().into_iter().find(|(name, _)| name == report);
+    let words = found.map_or(String::new(), |(_, words)| words);
     format!("`bench {}`", words.replace(',', " ").replace(';', ","))
 }
 

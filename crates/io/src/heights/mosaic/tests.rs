@@ -99,19 +99,11 @@ fn gaps_and_differences_are_noted() {
     assert!(!voids[0] && voids[2] && !voids[13]);
     assert_eq!(gap.notes, ["60.000 % of the joined extent is in no file: voids there"]);
 
-    let mut other = tile("b", [0, 1], [2, 2]);
-    other.1.values[0] = 4.0;
-    let [one, two] = [[0, 1], [1, 0]].map(|order| {
-        let tiles = [
-            tile("a", [0, 0], [2, 2]),
-            (other.0.clone(), {
-                let mut again = tile("b", [0, 1], [2, 2]).1;
-                again.values[0] = 4.0;
-                again
-            }),
-        ];
-        let mut tiles: Vec<_> = tiles.into_iter().map(Some).collect();
-        joined(order.map(|i: usize| tiles[i].take().unwrap()).into()).unwrap()
+    let [one, two] = [0, 1].map(|first| {
+        let mut tiles = vec![tile("a", [0, 0], [2, 2]), tile("b", [0, 1], [2, 2])];
+        tiles[1].1.values[0] = 4.0;
+        tiles.rotate_left(first);
+        joined(tiles).unwrap()
     });
     assert_eq!((one.values[1], two.values[1]), (1.0, 4.0));
     let note =
