@@ -14,6 +14,7 @@ mod trade;
 mod values;
 mod view;
 
+use std::any::TypeId;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -23,19 +24,19 @@ use clap::{
 };
 
 use crate::horizon::Fourier;
-use crate::scene_file::SceneFile;
+use crate::scene_file::{Request, SceneFile};
 pub use auto::AutoArgs;
 pub use bake::BakeArgs;
-pub use camera::{CameraArgs, CameraAt, EyeArgs};
+pub use camera::{CameraArgs, CameraAt, EyeArgs, Size};
 pub use compare::CompareArgs;
 pub use maps::{HillshadeArgs, MapArgs, OpennessArgs, ShadowArgs, SkyViewArgs};
 pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
-pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
+pub use scene::{BorderName, FieldArgs, LightArgs, SceneArgs};
 pub use trade::TradeArgs;
-use values::{AZIMUTHS, FACTOR, SIDE, bytes, fourier, number};
-pub use values::{SkyArg, SpecularArg, albedo_colour, numbers};
+use values::{AZIMUTHS, FACTOR, SIDE, bytes, fourier, number, whole};
+pub use values::{SkyArg, SpecularArg, grey_or_colour, numbers};
 pub use view::ViewArgs;
 
 /// Computes the light on height fields with Vulkan: sky, environment, suns, key lights, sphere lights and bounces, with
@@ -90,9 +91,16 @@ fn arranged(command: clap::Command) -> clap::Command {
     };
     let mut args: Vec<Arg> = command.get_arguments().cloned().collect();
     args.sort_by_key(|arg| arg.get_help_heading().map(rank));
-    let mut args = args.into_iter().map(|arg| match arg.get_help_heading() {
-        Some("Expert") => arg.hide_short_help(true),
-        _ => arg,
+    let numbers = [TypeId::of::<u32>(), TypeId::of::<u64>(), TypeId::of::<usize>()];
+    let numbers = [&numbers[..], &[TypeId::of::<f32>(), TypeId::of::<f64>()]].concat();
+    let mut args = args.into_iter().map(|arg| {
+        // `-5` is a value of flags of numbers.
+        let is_number = numbers.iter().any(|n| arg.get_value_parser().type_id() == *n);
+        let arg = if is_number { arg.allow_negative_numbers(true) } else { arg };
+        match arg.get_help_heading() {
+            Some("Expert") => arg.hide_short_help(true),
+            _ => arg,
+        }
     });
     let command = command.mut_args(|_| args.next().expect("as many as there are"));
     if !command.get_arguments().any(Arg::is_hide_short_help_set) {
@@ -156,9 +164,8 @@ impl Cli {
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
             Command::View(args) => {
-                if let Some((_, matches)) = matches.subcommand() {
-                    args.remember(matches);
-                }
+                args.asked =
+                    matches.subcommand().map(|(_, own)| Request::of(own)).unwrap_or_default();
                 Some(&mut args.quality)
             }
             Command::Reference(args) => {
@@ -246,9 +253,7 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "OUT.{png,tif,exr}", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]
@@ -276,8 +281,7 @@ pub struct RenderArgs {
         hide_short_help = true,
         help_heading = "Output",
         value_name = "FACTOR",
-        value_parser = number::<f32>(FACTOR),
-        allow_negative_numbers = true
+        value_parser = number::<f32>(FACTOR)
     )]
     pub exposure: Option<f32>,
     #[command(flatten)]
@@ -332,9 +336,7 @@ pub struct PlanArgs {
     #[command(flatten)]
     pub input: Input,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]
@@ -352,10 +354,10 @@ pub struct TuneArgs {
     #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Vec<PathBuf>,
     /// Side of the fractal field, texels
-    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = number::<usize>("a whole number from 1 to 16384"), allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = whole(1..=16_384_usize))]
     pub size: usize,
     /// Azimuths of the sky, 4 to 1024
-    #[arg(long, help_heading = "Quality", default_value_t = 64, value_name = "N", value_parser = number::<u32>(AZIMUTHS), allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Quality", default_value_t = 64, value_name = "N", value_parser = whole(AZIMUTHS))]
     pub azimuths: u32,
     /// Return to the untuned form
     #[arg(long, help_heading = "Device")]
@@ -374,12 +376,10 @@ pub struct BenchArgs {
     #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Option<PathBuf>,
     /// Side of the fractal field, texels
-    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = number::<usize>(SIDE), allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = whole(SIDE))]
     pub size: usize,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     /// Time only passes of these names
@@ -389,7 +389,7 @@ pub struct BenchArgs {
     ///
     /// After one warm-up run, timing stops after 10, 20, 40 … runs if the nominal 95 % confidence interval of the median is
     /// at most 2 % wide, or after 10 s and at least 6 runs. In flow, the whole frame's time decides.
-    #[arg(long, default_value_t = 200, value_name = "K", value_parser = number::<usize>("a whole number from 1 to 100000"), allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, default_value_t = 200, value_name = "K", value_parser = whole(1..=100_000_usize), help_heading = "Quality")]
     pub runs: usize,
     /// Also time sweeps with every setting, brute force, and a scalar sweep on the CPU
     ///
@@ -401,7 +401,7 @@ pub struct BenchArgs {
     ///
     /// Each row has the time of a frame, its device memory, and the error of its light. Rows are printed as they are
     /// measured; --json is written after the last one.
-    #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", value_parser = number::<usize>(SIDE), allow_negative_numbers = true, conflicts_with_all = ["input", "forms", "trace", "passes"])]
+    #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", value_parser = whole(SIDE), conflicts_with_all = ["input", "forms", "trace", "passes"])]
     pub sizes: Vec<usize>,
     /// Time each of --sizes with these numbers of azimuths
     #[arg(
@@ -410,8 +410,7 @@ pub struct BenchArgs {
         hide_short_help = true,
         value_delimiter = ',',
         value_name = "M,M,…",
-        value_parser = number::<u32>(AZIMUTHS),
-        allow_negative_numbers = true,
+        value_parser = whole(AZIMUTHS),
         requires = "sizes"
     )]
     pub azimuth_list: Vec<u32>,
@@ -459,6 +458,10 @@ impl Input {
         self.path.first().map_or(Path::new(""), PathBuf::as_path)
     }
 
+    pub fn paths(&self) -> Vec<&Path> {
+        self.path.iter().map(PathBuf::as_path).collect()
+    }
+
     /// All files, for messages and metadata.
     pub fn names(&self) -> String {
         let names = self.path.iter().map(|path| path.display().to_string());
@@ -478,7 +481,7 @@ pub struct GlobalArgs {
     /// all of a software driver's
     ///
     /// With less, the planner chooses slower settings or refuses the scene.
-    #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes)]
     pub memory_budget: Option<u64>,
     /// Write the settings used, times and figures as JSON
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]

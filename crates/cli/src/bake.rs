@@ -28,7 +28,7 @@ pub use folder::check_new;
 use folder::{check_folder, check_memory, remove_old, take_manifest};
 use job::{HORIZONS, Job, first};
 pub use kinds::{Kind, Normals};
-use kinds::{Map, Source};
+use kinds::{Making, Map, Source};
 pub use map::Format;
 use map::{MapFiles, Wanted};
 pub use request::{help, kind_named, packing};
@@ -52,9 +52,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     }
     let quality = request::quality(args)?;
     let (field, georeference) =
-        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
-    let scene =
-        setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
+        setup::georeferenced(&args.input.path, &args.scene.field, &args.global)?;
+    let scene = setup::scene(field, &args.scene, setup::Unlit::Sky, args.global.quiet)?;
     let around = request::directions(args, args.directions.unwrap_or(request::DIRECTIONS))?;
     let mut job = Job {
         scene: &scene,
@@ -77,7 +76,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
     let mut outputs: Vec<_> = paths.iter().map(|path| ("-o", Some(path.as_path()))).collect();
     outputs.push(("--json", args.global.json.as_deref()));
-    let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+    let inputs = setup::inputs(&args.input.path, &args.scene);
     setup::check_distinct(&outputs, &inputs)?;
     setup::check_plan(&args.global, |limits| job.plans(limits).map(first))?;
     if args.plan {
@@ -180,7 +179,7 @@ fn compute(
             }
             Source::Light(of) => {
                 plan.get_or_insert(first((of.plans)(job, &limits)?));
-                (of.make)(gpu, job, files, stages)?;
+                (of.make)(&mut Making { gpu, job, stages }, files)?;
             }
         }
     }
@@ -245,8 +244,8 @@ fn bake(
     let is_more = |name: &str| metadata.iter().all(|(known, _)| known != name);
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
-    let lights = is_light.then_some((&args.lights, &args.surface, scene));
-    metadata.extend(setup::asked(&args.input, &args.surface.field, lights));
+    let lights = is_light.then_some((&args.scene, scene));
+    metadata.extend(setup::asked(&args.input, &args.scene.field, lights));
     metadata.push(("field_hash".into(), hash));
     let whole = finish(all, &normals, &metadata, &stages)?;
     if !args.global.quiet {
@@ -336,7 +335,7 @@ fn say_done(
         true => format!("{} azimuths", quality.azimuths),
         false => format!("{} directions", args.directions.unwrap_or(request::DIRECTIONS)),
     };
-    let gpu_s: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e9;
+    let gpu_s = setup::total_ns(times) / 1e9;
     let of_it =
         if times.is_empty() { String::new() } else { format!(", {gpu_s:.1} s of it GPU time") };
     crate::say!(

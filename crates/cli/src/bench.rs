@@ -39,8 +39,6 @@ const ENOUGH: usize = 10;
 const STABLE: f64 = 0.02;
 /// Runs of the peak rates at most.
 const PEAK_RUNS: usize = 20;
-/// Largest side of a fractal field, which needs 8 GiB of heights while it is made.
-const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let outputs =
@@ -48,27 +46,14 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     for (flag, path) in outputs {
         path.as_ref().map_or(Ok(()), |path| setup::check_output(flag, path, &["json"]))?;
     }
-    if !(1..=100_000).contains(&args.runs) {
-        let found = args.runs.to_string();
-        return Err(Error::setting("--runs", found, "a whole number from 1 to 100000"));
-    }
-    for size in args.sizes.iter().chain(args.sizes.is_empty().then_some(&args.size)) {
-        if !(1..=LARGEST_SIZE).contains(size) {
-            let name = if args.sizes.is_empty() { "--size" } else { "--sizes" };
-            let expected = format!("a whole number from 1 to {LARGEST_SIZE}");
-            return Err(Error::setting(name, size.to_string(), expected));
-        }
-    }
     let quality = args.quality.quality()?;
     let counts =
         if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
-    check_azimuths(&args.azimuth_list)?;
     let field = match &args.input {
-        Some(path) => setup::field(std::slice::from_ref(path), &args.surface.field, &args.global)?,
+        Some(path) => setup::field(std::slice::from_ref(path), &args.scene.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
-    let scene =
-        setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
+    let scene = setup::scene(field, &args.scene, setup::Unlit::Sky, args.global.quiet)?;
     check_specular(&scene, &quality, args)?;
     let identity = identity(&scene, args.input.is_some());
     let busy = busy();
@@ -99,7 +84,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     })?;
     if !quiet {
         crate::say!("{device}, {driver}");
-        setup::say_light(&args.lights, &scene, None);
+        setup::say_light(&args.scene.lights, &scene, None);
         crate::say!("verified: {found}");
         crate::say!("peak rates: {}", peaks::text(&peaks));
         plan.notes
@@ -201,18 +186,6 @@ fn identity(scene: &Scene, is_input: bool) -> Value {
     json!({ "field": field, "lights": lights, "surface": text(scene_hash::surface(surface)) })
 }
 
-/// Refuses `--azimuth-list` before any device work.
-fn check_azimuths(list: &[u32]) -> Result<()> {
-    list.iter().try_for_each(|&azimuths| {
-        Quality { azimuths, ..Quality::default() }.check().map_err(|error| match error {
-            Error::Setting { found, expected, .. } => {
-                Error::setting("--azimuth-list", found, expected)
-            }
-            other => other,
-        })
-    })
-}
-
 /// Refuses specular light where no reference computes it.
 fn check_specular(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<()> {
     if scene.surface.specular.is_none() {
@@ -282,6 +255,15 @@ fn stable(times_ns: &[f64]) -> bool {
 /// A GPU's clocks take some tenths of a second to rise.
 const GPU_WARM_UP: Duration = Duration::from_millis(300);
 
+/// Runs something on a GPU until its clocks have risen.
+fn warm_up<T>(gpu: &Headless, mut run: impl FnMut() -> Result<T>) -> Result<()> {
+    let begun = Instant::now();
+    while !gpu.report().limits.is_cpu && begun.elapsed() < GPU_WARM_UP {
+        run()?;
+    }
+    Ok(())
+}
+
 /// Runs of these passes, after one to warm up, or as many as a GPU's clocks need; each after a flush of the caches by the
 /// frame `flushes`, if any.
 fn repeated(
@@ -291,11 +273,8 @@ fn repeated(
     most: usize,
     mut flushes: Option<&mut Frame>,
 ) -> Result<Vec<Vec<Timing>>> {
-    let begun = Instant::now();
     gpu.draw_passes(frame, passes)?;
-    while !gpu.report().limits.is_cpu && begun.elapsed() < GPU_WARM_UP {
-        gpu.draw_passes(frame, passes)?;
-    }
+    warm_up(gpu, || gpu.draw_passes(frame, passes))?;
     let flush = || flushes.as_mut().map_or(Ok(()), |flushes| peaks::flush(gpu, flushes));
     timed(most, flush, || gpu.draw_passes(frame, passes))
 }
@@ -351,7 +330,8 @@ fn time(
     let every: Vec<&Pass> = plan.passes.iter().collect();
     let needed = after_new_heights(&plan);
     let has_tables = needed.len() < plan.passes.len();
-    let mut progress = Progress::new(bar, names(&plan, &wanted, has_tables), args.runs, later);
+    let (names, _) = measured(&plan, &wanted, has_tables, &[], [0.0; 2]);
+    let mut progress = Progress::new(bar, names, args.runs, later);
     let mut rows = Vec::new();
     progress.begin_next();
     let begun = Instant::now();
@@ -359,7 +339,7 @@ fn time(
     // One run warms up.
     let frame_s = begun.elapsed().as_secs_f64() / (runs.len() + 1) as f64;
     let of_passes = runs.last().map_or(&[][..], Vec::as_slice);
-    progress.runs_take(run_seconds(of_passes, &wanted, has_tables, [frame_s, flush_s]));
+    progress.runs_take(measured(&plan, &wanted, has_tables, of_passes, [frame_s, flush_s]).1);
     let row = |pass: String, mode, passes: &[&Pass], runs: usize, times: &[f64]| {
         Row::of(pass, mode, &plan, passes, azimuths, (runs, times))
     };
@@ -411,37 +391,29 @@ fn nearest_to_median(runs: Vec<Vec<Timing>>) -> Vec<Timing> {
     nearest.and_then(|at| runs.into_iter().nth(at)).unwrap_or_default()
 }
 
-/// Names of what [`time`] measures, in its order.
-fn names(plan: &Plan, wanted: &[usize], has_tables: bool) -> Vec<String> {
+/// Names of what [`time`] measures, in its order, and seconds of one run of each, from the times of a frame, of a flush, and of the
+/// passes in flow. Without timestamps `of_passes` is empty, and a pass counts as a whole frame.
+fn measured(
+    plan: &Plan,
+    wanted: &[usize],
+    has_tables: bool,
+    of_passes: &[Timing],
+    [frame_s, flush_s]: [f64; 2],
+) -> (Vec<String>, Vec<f64>) {
     let frames = [
-        Some("frames in flow"),
-        Some("frames without timestamps between passes"),
-        has_tables.then_some("frames of new heights"),
-        Some("frames with cold caches"),
+        Some(("frames in flow", frame_s)),
+        Some(("frames without timestamps between passes", frame_s)),
+        has_tables.then_some(("frames of new heights", frame_s)),
+        Some(("frames with cold caches", frame_s + flush_s)),
     ];
     let of_pass = |i: &usize| {
         let label = plan.passes[*i].label();
-        ["alone", "with cold caches"].map(|how| format!("{label} {how}"))
-    };
-    let frames = frames.into_iter().flatten().map(str::to_owned);
-    frames.chain(wanted.iter().flat_map(of_pass)).collect()
-}
-
-/// Seconds of one run of each of these, from the times of a frame, of a flush, and of the passes in flow. Without timestamps
-/// `of_passes` is empty, and a pass counts as a whole frame.
-fn run_seconds(
-    of_passes: &[Timing],
-    wanted: &[usize],
-    has_tables: bool,
-    [frame_s, flush_s]: [f64; 2],
-) -> Vec<f64> {
-    let frames =
-        [Some(frame_s), Some(frame_s), has_tables.then_some(frame_s), Some(frame_s + flush_s)];
-    let of_pass = |i: &usize| {
         let pass_s = of_passes.get(*i).map_or(frame_s, |timing| timing.ns / 1e9);
-        [pass_s, pass_s + flush_s]
+        [("alone", pass_s), ("with cold caches", pass_s + flush_s)]
+            .map(|(how, run_s)| (format!("{label} {how}"), run_s))
     };
-    frames.into_iter().flatten().chain(wanted.iter().flat_map(of_pass)).collect()
+    let frames = frames.into_iter().flatten().map(|(name, run_s)| (name.to_owned(), run_s));
+    frames.chain(wanted.iter().flat_map(of_pass)).unzip()
 }
 
 #[cfg(test)]
@@ -500,8 +472,7 @@ mod tests {
         let timing = |i: usize| Timing { label: String::new(), ns: 1e9 * (1 + i) as f64 };
         let of_passes: Vec<Timing> = (0..plan.passes.len()).map(timing).collect();
         for has_tables in [false, true] {
-            let names = names(&plan, &[0, 2], has_tables);
-            let run_s = run_seconds(&of_passes, &[0, 2], has_tables, [50.0, 0.5]);
+            let (names, run_s) = measured(&plan, &[0, 2], has_tables, &of_passes, [50.0, 0.5]);
             assert_eq!(names.len(), run_s.len());
             assert_eq!(names.len(), 7 + usize::from(has_tables));
             for (name, run_s) in names.iter().zip(&run_s) {
@@ -511,7 +482,7 @@ mod tests {
             }
             assert_eq!(run_s[run_s.len() - 2..], [3.0, 3.5]);
         }
-        let untimed = run_seconds(&[], &[0], false, [50.0, 0.5]);
+        let (_, untimed) = measured(&plan, &[0], false, &[], [50.0, 0.5]);
         assert_eq!(untimed, [50.0, 50.0, 50.5, 50.0, 50.5]);
     }
 
@@ -543,13 +514,6 @@ mod tests {
             assert_eq!(stable(&vec![1.0; count]), is_asked, "{count} runs");
         }
         assert!(!stable(&[]) && !stable(&[0.0; 10].map(|_: f64| f64::NAN)));
-    }
-
-    #[test]
-    fn an_azimuth_list_is_refused_by_its_own_name() {
-        assert!(check_azimuths(&[]).is_ok() && check_azimuths(&[4, 1024]).is_ok());
-        let message = check_azimuths(&[8, 3]).unwrap_err().to_string();
-        assert!(message.contains("--azimuth-list: found 3, expected"), "{message}");
     }
 
     /// Sums of 1, 5 and 3: the median is the last run's.

@@ -90,13 +90,11 @@ fn check(args: &CompareArgs) -> Result<()> {
             return Err(Error::file(path, "name", "the extension .json", expected));
         }
     }
-    let outputs = [("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())];
-    for ((flag, path), kinds) in
-        outputs.into_iter().zip([&["exr", "tif", "tiff", "npy"][..], &["json"]])
-    {
-        path.map_or(Ok(()), |path| setup::check_output(flag, path, kinds))?;
-    }
-    setup::check_distinct(&outputs, &[&args.result, &args.reference])?;
+    let outputs = [
+        ("--diff", args.diff.as_deref(), &["exr", "tif", "tiff", "npy"][..]),
+        ("--json", args.json.as_deref(), &["json"]),
+    ];
+    setup::check_outputs(&outputs, &[&args.result, &args.reference])?;
     for (flag, bound) in args.bounds.all() {
         if let Some(bound) = bound.filter(|x| x.is_nan() || *x < 0.0) {
             return Err(Error::setting(flag, bound.to_string(), "0 or more"));
@@ -163,8 +161,5 @@ fn write_difference(
         .map(|(pair, plane)| layer("difference", Channels::Scalar(pair.name, plane)))
         .collect();
     layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));
-    if setup::is_geotiff(path) {
-        return files::write_geotiff(path, [rows, cols], &layers, &[], at, &[]);
-    }
-    files::write_exr(path, rows, cols, &layers, &[])
+    setup::write_layers(path, [rows, cols], &layers, &[], at, &[])
 }

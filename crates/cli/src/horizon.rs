@@ -108,10 +108,10 @@ pub fn for_each(
 enum LayerFile {
     Npy(NpyWriter),
     Tif(GeoTiffWriter),
-    /// Its path, size and layers, held until the end.
-    Exr(PathBuf, [usize; 2], Vec<(String, Vec<f32>)>),
-    /// Its path, size and texels: north, east, south, west.
-    Png(PathBuf, [usize; 2], Vec<[u8; 4]>),
+    /// Its path and layers, held until the end.
+    Exr(PathBuf, Vec<(String, Vec<f32>)>),
+    /// Its path and texels: north, east, south, west.
+    Png(PathBuf, Vec<[u8; 4]>),
 }
 
 /// An elevation as a channel of Stellarium's horizon maps: sign(s) √|s| of its sine s, mapped from -1..1 to 0..255. A void has elevation
@@ -133,15 +133,13 @@ impl LayerFile {
             "npy" => Ok(Self::Npy(NpyWriter::create(path, &[count, rows, cols])?)),
             "exr" => {
                 let layers = names.into_iter().map(|name| (name, Vec::new())).collect();
-                Ok(Self::Exr(path.to_owned(), [rows, cols], layers))
+                Ok(Self::Exr(path.to_owned(), layers))
             }
-            "png" => Ok(Self::Png(path.to_owned(), [rows, cols], vec![[0; 4]; rows * cols])),
+            "png" => Ok(Self::Png(path.to_owned(), vec![[0; 4]; rows * cols])),
             _ => {
                 let bands = names.into_iter().map(|name| Band { name, unit: unit.to_owned() });
-                let georeference = georeference.cloned();
-                let file =
-                    GeoTiffWriter::create(path, [rows, cols], bands.collect(), georeference)?;
-                Ok(Self::Tif(file))
+                let (bands, at) = (bands.collect(), georeference.cloned());
+                GeoTiffWriter::create(path, [rows, cols], bands, at).map(Self::Tif)
             }
         }
     }
@@ -150,26 +148,26 @@ impl LayerFile {
         match self {
             Self::Npy(file) => file.write_plane(layer, &plane),
             Self::Tif(file) => file.write(layer, &plane),
-            Self::Exr(_, _, layers) => {
+            Self::Exr(_, layers) => {
                 layers[layer].1 = plane;
                 Ok(())
             }
-            Self::Png(_, _, texels) => {
+            Self::Png(_, texels) => {
                 texels.iter_mut().zip(plane).for_each(|(to, angle)| to[layer] = channel(angle));
                 Ok(())
             }
         }
     }
 
-    fn finish(self, metadata: &[(String, String)]) -> Result<()> {
+    fn finish(self, [rows, cols]: [usize; 2], metadata: &[(String, String)]) -> Result<()> {
         match self {
             Self::Npy(file) => file.finish(),
             Self::Tif(file) => file.finish(metadata),
-            Self::Exr(path, [rows, cols], layers) => {
+            Self::Exr(path, layers) => {
                 let layers = layers.iter().map(|(name, plane)| Layer::scalar(name, plane));
                 files::write_exr(&path, rows, cols, &layers.collect::<Vec<_>>(), metadata)
             }
-            Self::Png(path, [rows, cols], texels) => {
+            Self::Png(path, texels) => {
                 let codes = texels.as_flattened();
                 files::write_codes_aside(&path, [cols, rows], (4, 8), codes, metadata)?.place()
             }
@@ -180,20 +178,12 @@ impl LayerFile {
 pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let endings: &[&str] =
         if args.fourier.is_some() { &["ktx2"] } else { &["npy", "tif", "tiff", "exr", "png"] };
-    setup::check_output("-o", &args.output, endings)?;
-    if let Some(path) = &args.distances {
-        setup::check_output("--distances", path, &["npy", "tif", "tiff"])?;
-    }
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
-    }
     let outputs = [
-        ("-o", Some(args.output.as_path())),
-        ("--distances", args.distances.as_deref()),
-        ("--json", args.global.json.as_deref()),
+        ("-o", Some(args.output.as_path()), endings),
+        ("--distances", args.distances.as_deref(), &["npy", "tif", "tiff"]),
+        ("--json", args.global.json.as_deref(), &["json"]),
     ];
-    let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
-    setup::check_distinct(&outputs, &inputs)?;
+    setup::check_outputs(&outputs, &args.input.paths())?;
     let quality = args.quality.quality()?;
     let is_npy = setup::extension(&args.output) == "npy";
     let is_exact = quality.lines == Lines::Exact && quality.method != Method::BruteForce;
@@ -274,11 +264,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             &limits,
             distances,
             &mut |k, angles, distances| {
-                let masked = |plane: &[f32]| {
-                    let mut plane = plane.to_vec();
-                    setup::mask_voids(&field, &mut plane, 1);
-                    plane
-                };
+                let masked = |plane: &[f32]| setup::masked(&field, plane.to_vec());
                 let layer = compass.layer_of[k as usize];
                 if let Some(series) = &mut series {
                     series.add(k as usize, angles);
@@ -340,7 +326,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let of_distances = "distance to the horizon's occluder, m; 0 without one";
     for (file, values) in [(angles_file, of_angles), (distances_file, of_distances)] {
         let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
-        file.map_or(Ok(()), |file| file.finish(&about))?;
+        file.map_or(Ok(()), |file| file.finish([shape[1], shape[2]], &about))?;
     }
     if setup::extension(&args.output) == "png" {
         world::write(&args.output, &args.input, georeference.as_ref())?;
@@ -354,7 +340,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         files::write_json(json, &value)?;
     }
     if !args.global.quiet {
-        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        let ms: f64 = setup::total_ns(&times) / 1e6;
         crate::say!(
             "Wrote {} ({}x{}, {} azimuths{of_series}) in {ms:.1} ms of GPU time on {}.",
             args.output.display(),

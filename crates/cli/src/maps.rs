@@ -1,7 +1,7 @@
 //! `hillshade`, `shadow`, `ao`, `svf` and `openness`: maps, in one file.
 
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::DVec3;
 use ridgelight::gpu::{Headless, Timing};
@@ -11,7 +11,7 @@ use ridgelight::scene::{
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Georeference, Layer};
+use ridgelight_io::{Georeference, Layer};
 
 use crate::args::{
     FieldArgs, GlobalArgs, HillshadeArgs, MapArgs, OpennessArgs, ShadowArgs, SkyViewArgs,
@@ -54,7 +54,7 @@ pub fn sky_view(
 }
 
 /// What a map's values are.
-struct Values {
+pub struct Values {
     /// The channel of an .exr and the band of a .tif.
     name: &'static str,
     unit: &'static str,
@@ -76,7 +76,7 @@ impl Values {
 }
 
 /// Linear, not sRGB: a texture of engines, and a layer to multiply by.
-const SKY_VIEW_VALUES: Values = Values {
+pub const SKY_VIEW_VALUES: Values = Values {
     name: SKY_VIEW,
     unit: "",
     about: "cosine-weighted share of the hemisphere about the normal that no ground occludes",
@@ -84,7 +84,7 @@ const SKY_VIEW_VALUES: Values = Values {
 };
 
 /// The same map. The range of a .png is that of RVT's 8-bit sky-view factor (`svf_bytscl` in `rvt/default.py` of RVT_py).
-const SVF_VALUES: Values = Values { png: [0.6375, 1.0], ..SKY_VIEW_VALUES };
+pub const SVF_VALUES: Values = Values { png: [0.6375, 1.0], ..SKY_VIEW_VALUES };
 
 /// As `gdaldem hillshade`: 1 to 255, and 0 is no data.
 const HILLSHADE_VALUES: Values = Values {
@@ -134,30 +134,17 @@ struct Job<'a> {
 impl<'a> Job<'a> {
     fn new(args: &'a MapArgs, surface: &'a FieldArgs, read: Read) -> Result<Self> {
         let MapArgs { input, output, global, .. } = args;
-        setup::check_output("-o", output, &["tif", "tiff", "npy", "exr", "png"])?;
-        if let Some(json) = &global.json {
-            setup::check_output("--json", json, &["json"])?;
-        }
-        let outputs = [("-o", Some(output.as_path())), ("--json", global.json.as_deref())];
-        let inputs: Vec<&Path> = input.path.iter().map(PathBuf::as_path).collect();
-        setup::check_distinct(&outputs, &inputs)?;
+        let kinds: &[&str] = &["tif", "tiff", "npy", "exr", "png"];
+        let json = global.json.as_deref();
+        let outputs = [("-o", Some(output.as_path()), kinds), ("--json", json, &["json"])];
+        setup::check_outputs(&outputs, &input.paths())?;
         let (field, georeference) = read(&input.path, surface, global)?;
         Ok(Self { args, surface, field, georeference })
     }
 
-    /// Writes the map, and reports it. `metadata` and `times` are those of the device, if it was used.
+    /// Writes the map, and reports it. Several planes are bands, channels, or layers of an array; a .png has the first.
+    /// `metadata` and `times` are those of the device, if it was used.
     fn write(
-        &self,
-        values: &Values,
-        plane: Vec<f32>,
-        metadata: Vec<(String, String)>,
-        times: &[Timing],
-    ) -> Result<Outcome> {
-        self.write_all(std::slice::from_ref(values), vec![plane], metadata, times)
-    }
-
-    /// The same with several planes: bands, channels, or layers of an array. A .png has the first.
-    fn write_all(
         &self,
         values: &[Values],
         mut planes: Vec<Vec<f32>>,
@@ -170,10 +157,7 @@ impl<'a> Job<'a> {
         metadata.extend(setup::asked(input, self.surface, None));
         metadata.push(("values".into(), values[0].about.into()));
         let of_values = values.iter().zip(&planes);
-        let layers: Vec<_> = of_values
-            .map(|(v, plane)| (String::new(), Channels::Scalar(v.name, plane)))
-            .map(|(name, channels)| Layer { name, channels })
-            .collect();
+        let layers: Vec<_> = of_values.map(|(v, plane)| Layer::scalar(v.name, plane)).collect();
         let place = self.georeference.as_ref();
         match setup::extension(path).as_str() {
             "npy" => {
@@ -181,7 +165,6 @@ impl<'a> Job<'a> {
                 let shape = if planes.len() == 1 { &size[..] } else { &shape };
                 files::write_npy_f32(path, shape, planes.iter().map(Vec::as_slice))?;
             }
-            "exr" => files::write_exr(path, rows, cols, &layers, &metadata)?,
             "png" => {
                 let (channels, codes) = codes(&planes[0], values[0].png);
                 let [black, white] = values[0].png;
@@ -193,7 +176,7 @@ impl<'a> Job<'a> {
             }
             _ => {
                 let units: Vec<_> = values.iter().map(|v| (v.name, v.unit)).collect();
-                files::write_geotiff(path, size, &layers, &units, place, &metadata)?;
+                setup::write_layers(path, size, &layers, &units, place, &metadata)?;
             }
         }
         if let Some(json) = &global.json {
@@ -242,7 +225,7 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     metadata.push(("sun1".into(), direction));
-    job.write(&HILLSHADE_VALUES, plane, metadata, &[])
+    job.write(&[HILLSHADE_VALUES], vec![plane], metadata, &[])
 }
 
 pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
@@ -272,7 +255,7 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     // Absolute, like the heights of the input.
     let absolute = |height: &mut f32| *height = (f64::from(*height) + field.base_m()) as f32;
     planes[1].iter_mut().for_each(absolute);
-    job.write_all(&SHADOW_VALUES, planes, metadata, &times)
+    job.write(&SHADOW_VALUES, planes, metadata, &times)
 }
 
 /// A note on values of a sun that a map ignores.
@@ -303,15 +286,8 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
     (0..rows * cols).map(|i| (1.0 + 254.0 * cos(i).max(0.0)) as f32).collect()
 }
 
-pub fn ao(args: &SkyViewArgs) -> Result<Outcome> {
-    sky_view_map(args, &SKY_VIEW_VALUES)
-}
-
-pub fn svf(args: &SkyViewArgs) -> Result<Outcome> {
-    sky_view_map(args, &SVF_VALUES)
-}
-
-fn sky_view_map(args: &SkyViewArgs, values: &Values) -> Result<Outcome> {
+/// `ao` and `svf`, by their values.
+pub fn sky_view_map(args: &SkyViewArgs, values: Values) -> Result<Outcome> {
     let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
     let job = Job::new(&args.map, &args.map.surface, setup::georeferenced)?;
     let border = setup::border(job.surface);
@@ -327,7 +303,7 @@ fn sky_view_map(args: &SkyViewArgs, values: &Values) -> Result<Outcome> {
     let bar = setup::terminal::progress(args.map.global.quiet, "sky view");
     let (plane, times) = sky_view(&mut gpu, &job.field, plan)?;
     bar.finish_and_clear();
-    job.write(values, plane, metadata, &times)
+    job.write(&[values], vec![plane], metadata, &times)
 }
 
 pub fn openness(OpennessArgs { of: args, negative }: &OpennessArgs) -> Result<Outcome> {
@@ -363,8 +339,8 @@ pub fn openness(OpennessArgs { of: args, negative }: &OpennessArgs) -> Result<Ou
     // Without ground in any azimuth, 0/0 is NaN: no data.
     let mean = |(sum, count): &(f64, u32)| (sum / f64::from(*count)).to_degrees() as f32;
     let plane = sums.iter().map(mean).collect();
-    let values = if *negative { &NEGATIVE_OPENNESS_VALUES } else { &OPENNESS_VALUES };
-    job.write(values, plane, metadata, &times)
+    let values = if *negative { NEGATIVE_OPENNESS_VALUES } else { OPENNESS_VALUES };
+    job.write(&[values], vec![plane], metadata, &times)
 }
 
 /// With an open border, the horizon is -90° in an azimuth without ground. Ground this steep, of slope 1e5, is none.

@@ -13,17 +13,13 @@ use crate::render::camera;
 use crate::setup::{self, Outcome, tuned};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
-        let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
-        setup::check_distinct(&[("--json", Some(json))], &inputs)?;
-    }
+    let inputs = setup::inputs(&args.input.path, &args.scene);
+    setup::check_outputs(&[("--json", args.global.json.as_deref(), &["json"])], &inputs)?;
     let quality = args.quality.quality()?;
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
     let scene = setup::scene(
         field,
-        &args.surface,
-        &args.lights,
+        &args.scene,
         setup::Unlit::of(&quality, args.camera.eye.compass_deg()),
         args.global.quiet,
     )?;
@@ -49,7 +45,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
             if let Some(view) = &view {
                 crate::say!("\n{}", view.to_string().trim_end());
             }
-            setup::say_light(&args.lights, &scene, None);
+            setup::say_light(&args.scene.lights, &scene, None);
         }
         PlanFormat::Json => crate::say!("{:#}", json(&plan, view.as_ref())),
         PlanFormat::Dot => crate::say!("{}", dot(&plan, view.as_ref()).trim_end()),
@@ -62,9 +58,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
 
 /// `devices`: the Vulkan devices, their limits, and what they lack.
 pub fn devices(args: &DevicesArgs) -> Result<Outcome> {
-    if let Some(path) = &args.json {
-        setup::check_output("--json", path, &["json"])?;
-    }
+    setup::check_outputs(&[("--json", args.json.as_deref(), &["json"])], &[])?;
     let all = gpu::devices()?;
     if all.is_empty() {
         crate::say!("no device: the Vulkan loader works, but it finds no driver");

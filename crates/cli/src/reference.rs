@@ -11,7 +11,7 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::ReferenceArgs;
-use crate::render::camera;
+use crate::render::{camera, rgb};
 use crate::setup::{self, Outcome};
 
 /// Fewest batches for a reliable error: its relative standard error is 1/√(2·7).
@@ -33,16 +33,16 @@ pub fn takes_signal() -> bool {
 pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     check(args)?;
     let (field, georeference) =
-        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
+        setup::georeferenced(&args.input.path, &args.scene.field, &args.global)?;
     let scene = setup::scene(
         field,
-        &args.surface,
-        &args.lights,
+        &args.scene,
         setup::Unlit::Daylight(args.camera.compass_deg()),
         args.global.quiet,
     )?;
     let eye_m = camera::eye_m(&args.camera, &scene.field)?;
-    let is_idle = eye_m.is_some() && scene.surface.specular.is_none() && !args.lights.is_empty();
+    let is_idle =
+        eye_m.is_some() && scene.surface.specular.is_none() && !args.scene.lights.is_empty();
     if is_idle && !args.has_camera_of_file && !args.global.quiet {
         setup::note("--camera changes nothing without --specular");
     }
@@ -75,10 +75,10 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
             scene.field.cols(),
             scene.field.rows(),
             error_text(traced.error),
-            traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
+            setup::total_ns(&traced.times) / 1e6,
             gpu.report().name
         );
-        setup::say_light(&args.lights, &scene, None);
+        setup::say_light(&args.scene.lights, &scene, None);
         if let Some(wanted) = missed {
             let least = 2 * REFERENCE_BATCH;
             let whole = match paths == args.spp {
@@ -100,15 +100,11 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
 }
 
 fn check(args: &ReferenceArgs) -> Result<()> {
-    setup::check_output("-o", &args.output, &["exr", "tif", "tiff"])?;
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
-    }
-    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
-    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
-    if args.spp == 0 {
-        return Err(Error::setting("--spp", "0", "a whole number, 1 or more"));
-    }
+    let outputs = [
+        ("-o", Some(args.output.as_path()), &["exr", "tif", "tiff"][..]),
+        ("--json", args.global.json.as_deref(), &["json"]),
+    ];
+    setup::check_outputs(&outputs, &setup::inputs(&args.input.path, &args.scene))?;
     // Paths are counted in whole batches.
     let most = u32::MAX / REFERENCE_BATCH * REFERENCE_BATCH;
     if args.spp > most {
@@ -149,7 +145,8 @@ fn trace(
         let is_due = batches % BATCHES_A_CHECK == 0 && batches >= LEAST_BATCHES;
         // At least two batches: one has no error estimate.
         if batches >= 2 && (batches >= wanted || interrupted || is_due) {
-            let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
+            let radiance = rgb(&gpu.pixels(frame, 0)?);
+            let standard_error = rgb(&gpu.pixels(frame, 1)?);
             let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
             let unsampled =
                 plan::unsampled_light_error(scene, args.bounces, batches * REFERENCE_BATCH);
@@ -184,12 +181,6 @@ fn trace(
     }
 }
 
-/// Texels of an output.
-pub fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
-    let pixels = gpu.pixels(frame, output)?;
-    Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
-}
-
 /// The error in words. A percentage is meaningless where almost no light has been sampled.
 fn error_text(error: f64) -> String {
     match error {
@@ -203,7 +194,7 @@ fn relative(error: f64, mean: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / mean }
 }
 
-fn root_mean_square(v: [f64; 3]) -> f64 {
+pub fn root_mean_square(v: [f64; 3]) -> f64 {
     (v.iter().map(|v| v * v).sum::<f64>() / 3.0).sqrt()
 }
 
@@ -250,8 +241,8 @@ fn write(
     traced: &Traced,
 ) -> Result<()> {
     let mut metadata = setup::metadata(gpu, &scene.field, frame.plan());
-    let lit = Some((&args.lights, &args.surface, scene));
-    metadata.extend(setup::asked(&args.input, &args.surface.field, lit));
+    let lit = Some((&args.scene, scene));
+    metadata.extend(setup::asked(&args.input, &args.scene.field, lit));
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());
@@ -268,20 +259,8 @@ fn write(
         .iter()
         .map(|(name, texels)| Layer { name: (*name).into(), channels: Channels::Rgb(texels) })
         .collect();
-    let (rows, cols) = (scene.field.rows(), scene.field.cols());
-    match setup::is_geotiff(&args.output) {
-        true => {
-            files::write_geotiff(
-                &args.output,
-                [rows, cols],
-                &layers,
-                &[],
-                georeference,
-                &metadata,
-            )?;
-        }
-        false => files::write_exr(&args.output, rows, cols, &layers, &metadata)?,
-    }
+    let size = [scene.field.rows(), scene.field.cols()];
+    setup::write_layers(&args.output, size, &layers, &[], georeference, &metadata)?;
     match &args.global.json {
         Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
         None => Ok(()),

@@ -19,7 +19,7 @@ use choices::{Choice, Place};
 use crate::args::{Layer, RenderArgs};
 use crate::idle;
 use crate::setup::sky;
-use crate::setup::tint::Tint;
+use crate::setup::tint::{self, Tint};
 use crate::setup::{self, Outcome};
 
 /// Where automatic exposure puts the luminance that a share of the pixels does not exceed, where the tint is lightest.
@@ -27,14 +27,13 @@ const EXPOSED: f64 = 0.8;
 const EXPOSED_SHARE: f64 = 0.99;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    setup::check_output("-o", &args.output, &["exr", "tif", "tiff", "png"])?;
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
-    }
+    let outputs = [
+        ("-o", Some(args.output.as_path()), &["exr", "tif", "tiff", "png"][..]),
+        ("--json", args.global.json.as_deref(), &["json"]),
+    ];
+    setup::check_outputs(&outputs, &setup::inputs(&args.input.path, &args.scene))?;
     let is_png = setup::extension(&args.output) == "png";
     let is_tif = setup::is_geotiff(&args.output);
-    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
-    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
     args.exposure.map_or(Ok(()), |exposure| check_positive("--exposure", exposure))?;
     if is_png && !args.layers.is_empty() {
         return Err(Error::setting(
@@ -63,12 +62,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = args.quality.quality()?;
     let (field, georeference) =
-        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
+        setup::georeferenced(&args.input.path, &args.scene.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, args.camera.eye.compass_deg());
-    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
+    let mut scene = setup::scene(field, &args.scene, unlit, args.global.quiet)?;
     let tint = match is_png {
-        true => setup::tinted(&mut scene, &args.surface),
-        false => args.surface.tint.unwrap_or(Tint::None),
+        true => setup::tinted(&mut scene, &args.scene),
+        false => args.scene.tint.unwrap_or(Tint::None),
     };
     let scene = scene;
     if goal.is_some() {
@@ -117,7 +116,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         (quality, choice) = (found, Some(now));
         progress.set_message("lighting");
     }
-    let is_given = args.quality.gives("bounces") || goal.is_some() || !args.lights.is_empty();
+    let is_given = args.quality.gives("bounces") || goal.is_some() || !args.scene.lights.is_empty();
     let with_bounce = match is_png && !is_given && bounce::changes_picture(&scene) {
         true => {
             let has_azimuths = args.quality.gives("bounce_azimuths");
@@ -136,7 +135,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let horizon = args.layers.contains(&Layer::Horizon);
     let mut used = plan.settings.clone();
     if horizon {
-        let border = setup::border(&args.surface.field);
+        let border = setup::border(&args.scene.field);
         used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
@@ -153,23 +152,17 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
             let look = |view| gpu.look(frame, view, scene.field.voids());
             let camera_pixels = view.as_ref().map(look).transpose()?;
-            times.extend(
-                camera_pixels
-                    .iter()
-                    .flat_map(|camera_pixels| camera_pixels.timings.iter().cloned()),
-            );
+            if let Some(drawn) = &camera_pixels {
+                times.extend(drawn.timings.iter().cloned());
+            }
             let mut metadata = setup::metadata(gpu, &scene.field, frame.plan());
             if let Some(share) = gpu.negative_share(frame)? {
                 metadata.push(("negative_share".to_owned(), share.to_string()));
             }
             Ok((times, pixels, camera_pixels, metadata))
         })?;
-    metadata.extend(setup::asked(
-        &args.input,
-        &args.surface.field,
-        Some((&args.lights, &args.surface, &scene)),
-    ));
-    if tint != Tint::None && args.surface.tint.is_none() {
+    metadata.extend(setup::asked(&args.input, &args.scene.field, Some((&args.scene, &scene))));
+    if tint != Tint::None && args.scene.tint.is_none() {
         metadata.retain(|(name, _)| name != "albedo");
         metadata.push(("tint".to_owned(), tint.name()));
     }
@@ -183,7 +176,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let mut shown = None;
-    let night = if setup::is_night(&args.lights, &scene.lights) { NIGHT_SHARE } else { 1.0 };
+    let night = if setup::is_night(&args.scene.lights, &scene.lights) { NIGHT_SHARE } else { 1.0 };
     let white = night * white(&scene.field, tint);
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
@@ -235,7 +228,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         if let Some(camera_view) = &camera_view {
             camera_view.say(args, &scene.field, &times, gpu.report());
         } else {
-            let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+            let ms = setup::total_ns(&times) / 1e6;
             crate::say!(
                 "Wrote {} ({cols}x{rows}) in {ms:.1} ms of GPU time on {}{}.",
                 args.output.display(),
@@ -243,7 +236,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 of_first_frame(gpu.report())
             );
         }
-        setup::say_light(&args.lights, &scene, added_bounces);
+        setup::say_light(&args.scene.lights, &scene, added_bounces);
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };
@@ -272,7 +265,7 @@ pub const NIGHT_SHARE: f64 = 0.1;
 /// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without
 /// that colour stays as dark as its tint.
 pub fn white(field: &HeightField, tint: Tint) -> f64 {
-    EXPOSED * crate::setup::tint::peak(field, tint, EXPOSED_SHARE)
+    EXPOSED * tint::peak(field, tint, EXPOSED_SHARE)
 }
 
 /// The exposure that puts the 99th percentile of luminance at [`white`], of the pixels that are not left out. 1 where that
@@ -280,13 +273,9 @@ pub fn white(field: &HeightField, tint: Tint) -> f64 {
 pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>, white: f64) -> f32 {
     let texels = picture.iter().enumerate().filter(|(i, _)| !left_out.is_some_and(|v| v[*i]));
     let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
-    if all.is_empty() {
-        return 1.0;
-    }
-    let at = (EXPOSED_SHARE * (all.len() - 1) as f64).round() as usize;
-    let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
+    let Some(bright) = tint::at_share(&mut all, EXPOSED_SHARE) else { return 1.0 };
     // Four digits: a factor that can be typed.
-    let exposure = format!("{:.3e}", white / *bright).parse::<f32>().unwrap_or(1.0);
+    let exposure = format!("{:.3e}", white / bright).parse::<f32>().unwrap_or(1.0);
     if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
 }
 
@@ -339,20 +328,12 @@ fn mean_horizon(
 ) -> Result<Vec<f32>> {
     let field = &scene.field;
     let mut sum = vec![0.0_f64; field.rows() * field.cols()];
-    crate::horizon::for_each(
-        gpu,
-        field,
-        scene.surface.border,
-        quality,
-        limits,
-        false,
-        &mut |_, angles, _| {
-            for (s, a) in sum.iter_mut().zip(angles) {
-                *s += f64::from(*a);
-            }
-            Ok(())
-        },
-    )?;
+    let border = scene.surface.border;
+    let mut add = |_: u32, angles: &[f32], _: &[f32]| {
+        sum.iter_mut().zip(angles).for_each(|(s, a)| *s += f64::from(*a));
+        Ok(())
+    };
+    crate::horizon::for_each(gpu, field, border, quality, limits, false, &mut add)?;
     Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
 }
 
@@ -365,43 +346,23 @@ fn write_floats(
     horizon: Option<&[f32]>,
     metadata: &[(String, String)],
 ) -> Result<()> {
-    let masked: Vec<(String, Vec<[f32; 3]>, bool)> = pixels
-        .iter()
-        .map(|p| {
-            let mut texels = rgb(p);
-            if let Some(voids) = field.voids() {
-                for (texel, _) in texels.iter_mut().zip(voids).filter(|(_, v)| **v) {
-                    *texel = [f32::NAN; 3];
-                }
-            }
-            (p.name.clone(), texels, p.name == "sky_view")
-        })
-        .collect();
-    let scalars: Vec<Option<Vec<f32>>> =
-        masked.iter().map(|m| m.2.then(|| m.1.iter().map(|t| t[0]).collect())).collect();
-    let mut layers: Vec<FileLayer> = masked
-        .iter()
-        .zip(&scalars)
-        .map(|((name, texels, _), scalar)| FileLayer {
-            name: if name == "radiance" || scalar.is_some() { String::new() } else { name.clone() },
-            channels: match scalar {
-                Some(values) => Channels::Scalar("sky_view", values),
-                None => Channels::Rgb(texels),
-            },
-        })
-        .collect();
-    let mut masked_horizon = horizon.map(<[f32]>::to_vec).unwrap_or_default();
-    setup::mask_voids(field, &mut masked_horizon, 1);
-    if horizon.is_some() {
-        layers.push(FileLayer {
-            name: String::new(),
-            channels: Channels::Scalar("horizon_mean", &masked_horizon),
-        });
-    }
-    let (rows, cols) = (field.rows(), field.cols());
-    if !setup::is_geotiff(&args.output) {
-        return files::write_exr(&args.output, rows, cols, &layers, metadata);
-    }
-    let units = [("horizon_mean", "rad")];
-    files::write_geotiff(&args.output, [rows, cols], &layers, &units, georeference, metadata)
+    let masked = |p: &Pixels| {
+        let mut texels = rgb(p);
+        setup::mask_voids(field, texels.as_flattened_mut(), 3);
+        texels
+    };
+    let masked: Vec<Vec<[f32; 3]>> = pixels.iter().map(masked).collect();
+    let named = || pixels.iter().map(|p| p.name.as_str()).zip(&masked);
+    let sky_view = named().filter(|(name, _)| *name == "sky_view");
+    let sky_view: Vec<f32> = sky_view.flat_map(|(_, t)| t.iter().map(|t| t[0])).collect();
+    let horizon = horizon.map(|plane| setup::masked(field, plane.to_vec()));
+    let layers = named().map(|(name, texels)| match name {
+        "sky_view" => FileLayer::scalar(name, &sky_view),
+        "radiance" => FileLayer { name: String::new(), channels: Channels::Rgb(texels) },
+        _ => FileLayer { name: name.to_owned(), channels: Channels::Rgb(texels) },
+    });
+    let horizon = horizon.iter().map(|plane| FileLayer::scalar("horizon_mean", plane));
+    let layers: Vec<FileLayer> = layers.chain(horizon).collect();
+    let (size, units) = ([field.rows(), field.cols()], [("horizon_mean", "rad")]);
+    setup::write_layers(&args.output, size, &layers, &units, georeference, metadata)
 }

@@ -136,7 +136,7 @@ impl SceneFile {
 
     fn wrong(&self, given: &Given, rest: &str, found: String, expected: String) -> Error {
         let place = format!("line {}, {} {rest}", given.line, given.key);
-        Error::File { path: self.path.clone(), place: place.trim_end().to_owned(), found, expected }
+        Error::file(&self.path, place.trim_end(), found, expected)
     }
 }
 
@@ -144,7 +144,7 @@ impl SceneFile {
 fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
     let text = read(path)?;
     let root = Found::root(path, &text)?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = crate::setup::folder_of(path);
     let (mut given, groups) = (Vec::new(), keys::groups());
     for group in root.members()? {
         if group.key == "$schema" {
@@ -171,26 +171,20 @@ fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
                 let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
                 return Err(found.unknown(&known.join(", ")));
             };
-            let values = match key.kind {
-                Kind::List(parts) => found
-                    .items()?
-                    .iter()
-                    .map(|item| Ok((item.line(), item.key.clone(), item.parts(parts)?.into())))
-                    .collect::<Result<Vec<_>>>()?,
-                Kind::Files if found.items().is_ok_and(|items| !items.is_empty()) => found
-                    .items()?
-                    .iter()
-                    .map(|item| Ok((item.line(), item.key.clone(), item.value(key, folder)?)))
-                    .collect::<Result<Vec<_>>>()?,
-                _ => vec![(found.line(), found.key.clone(), found.value(key, folder)?)],
+            let items = match key.kind {
+                Kind::List(_) => Some(found.items()?),
+                Kind::Files => found.items().ok().filter(|items| !items.is_empty()),
+                _ => None,
             };
-            given.extend(values.into_iter().map(|(line, place, value)| Given {
-                id: key.id,
-                is_switch: matches!(key.kind, Kind::Switch),
-                value,
-                line,
-                key: place,
-            }));
+            for found in items.unwrap_or_else(|| vec![found]) {
+                given.push(Given {
+                    id: key.id,
+                    is_switch: matches!(key.kind, Kind::Switch),
+                    value: found.value(key, folder)?,
+                    line: found.line(),
+                    key: found.key,
+                });
+            }
         }
     }
     Ok(given)

@@ -23,13 +23,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SkyArg, SpecularArg, SurfaceArgs,
-    albedo_colour, flag,
+    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SceneArgs, SkyArg, SpecularArg, flag,
+    grey_or_colour,
 };
 use lights::{LIGHTS, light};
 pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
-pub use voids::mask_voids;
+pub use voids::{mask_voids, masked};
 
 /// How a command ended without an error.
 pub enum Outcome {
@@ -188,13 +188,8 @@ impl Unlit {
     }
 }
 
-pub fn scene(
-    field: HeightField,
-    surface: &SurfaceArgs,
-    lights: &LightArgs,
-    unlit: Unlit,
-    quiet: bool,
-) -> Result<Scene> {
+pub fn scene(field: HeightField, args: &SceneArgs, unlit: Unlit, quiet: bool) -> Result<Scene> {
+    let lights = &args.lights;
     check_suns(&lights.others.0.suns, -90.0)?;
     let set = lights.others.0.suns.iter().filter(|sun| sun.elevation_rad < 0.0).count();
     if set > 0 && !quiet {
@@ -214,32 +209,30 @@ pub fn scene(
              corner"
         ));
     }
-    let specular = match &surface.specular {
+    let specular = match &args.specular {
         None => None,
         Some(SpecularArg::Constant(one)) => Some(Specular::Constant(*one)),
         Some(SpecularArg::File(path)) => {
             Some(files::read_specular(path, field.rows(), field.cols())?)
         }
     };
-    let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint, specular.as_ref()));
-    let albedo = match (tint, albedo_colour(surface.albedo())) {
+    let tint = args.tint.and_then(|tint| tint::albedo(&field, tint, specular.as_ref()));
+    let albedo = match (tint, grey_or_colour(args.albedo())) {
         (Some(tint), _) => tint,
         (None, Some(colour)) => Albedo::Constant(colour),
-        (None, None) => {
-            files::read_albedo(Path::new(surface.albedo()), field.rows(), field.cols())?
-        }
+        (None, None) => files::read_albedo(Path::new(args.albedo()), field.rows(), field.cols())?,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), specular },
+        surface: Surface { albedo, border: border(&args.field), specular },
         lights: lights_of(lights, unlit)?,
         field,
     })
 }
 
 /// Tints a picture whose colours the command line does not give; returns its tint.
-pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
-    let tint = tint_of(surface);
-    if surface.tint.is_none()
+pub fn tinted(scene: &mut Scene, args: &SceneArgs) -> Tint {
+    let tint = tint_of(args);
+    if args.tint.is_none()
         && let Some(albedo) = tint::albedo(&scene.field, tint, scene.surface.specular.as_ref())
     {
         scene.surface.albedo = albedo;
@@ -248,9 +241,9 @@ pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
 }
 
 /// The tint of a picture.
-pub fn tint_of(surface: &SurfaceArgs) -> Tint {
-    let default = if surface.albedo.is_none() { Tint::Land } else { Tint::None };
-    surface.tint.unwrap_or(default)
+pub fn tint_of(args: &SceneArgs) -> Tint {
+    let default = if args.albedo.is_none() { Tint::Land } else { Tint::None };
+    args.tint.unwrap_or(default)
 }
 
 /// Refuses suns whose elevation is not from `lowest_deg` to 90 degrees. The message has the order of the flag's numbers:
@@ -387,17 +380,13 @@ pub fn wanted(layers: &[Layer]) -> Picture {
 }
 
 /// Input files of a command.
-pub fn inputs<'a>(
-    field: &'a [PathBuf],
-    lights: &'a LightArgs,
-    surface: &'a SurfaceArgs,
-) -> Vec<&'a Path> {
-    let albedo = albedo_colour(surface.albedo()).is_none().then_some(Path::new(surface.albedo()));
-    let specular = match &surface.specular {
+pub fn inputs<'a>(field: &'a [PathBuf], args: &'a SceneArgs) -> Vec<&'a Path> {
+    let albedo = grey_or_colour(args.albedo()).is_none().then_some(Path::new(args.albedo()));
+    let specular = match &args.specular {
         Some(SpecularArg::File(path)) => Some(path.as_path()),
         _ => None,
     };
-    let others = [lights.env.as_deref(), albedo, specular];
+    let others = [args.lights.env.as_deref(), albedo, specular];
     field.iter().map(PathBuf::as_path).chain(others.into_iter().flatten()).collect()
 }
 
@@ -405,11 +394,24 @@ pub fn inputs<'a>(
 pub fn planes(pixels: &Pixels, field: &HeightField) -> Vec<Vec<f32>> {
     let channel = |c: usize| {
         let all = pixels.values.iter().skip(c).step_by(pixels.channels);
-        let mut plane: Vec<f32> = all.copied().collect();
-        mask_voids(field, &mut plane, 1);
-        plane
+        masked(field, all.copied().collect())
     };
     (0..pixels.channels.min(3)).map(channel).collect()
+}
+
+/// Writes a GeoTIFF or an EXR, by the name.
+pub fn write_layers(
+    path: &Path,
+    [rows, cols]: [usize; 2],
+    layers: &[files::Layer],
+    units: &[(&str, &str)],
+    georeference: Option<&Georeference>,
+    metadata: &[(String, String)],
+) -> Result<()> {
+    if is_geotiff(path) {
+        return files::write_geotiff(path, [rows, cols], layers, units, georeference, metadata);
+    }
+    files::write_exr(path, rows, cols, layers, metadata)
 }
 
 /// Nanoseconds of all passes.
@@ -428,6 +430,11 @@ pub fn no_timestamps() -> Error {
 
 pub fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// The folder of a file.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Whether a name is that of a GeoTIFF.
@@ -455,7 +462,7 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
     if path.is_dir() {
         return Err(Error::setting(flag, format!("the directory {}", path.display()), "a file"));
     }
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     if !folder.is_dir() {
         return Err(Error::setting(
             flag,
@@ -466,13 +473,21 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
     files::check_writable(path)
 }
 
+/// Refuses outputs that cannot be written, and one that is also another output or an input. Each has its flag and the
+/// endings that it may have.
+pub fn check_outputs(outputs: &[(&str, Option<&Path>, &[&str])], inputs: &[&Path]) -> Result<()> {
+    for (flag, path, kinds) in outputs {
+        path.map_or(Ok(()), |path| check_output(flag, path, kinds))?;
+    }
+    let outputs: Vec<_> = outputs.iter().map(|(flag, path, _)| (*flag, *path)).collect();
+    check_distinct(&outputs, inputs)
+}
+
 /// Refuses an output that is also another output or an input.
 pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Result<()> {
     let place = |path: &Path| -> Option<PathBuf> {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        path.canonicalize()
-            .ok()
-            .or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
+        let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
+        path.canonicalize().ok().or_else(in_folder)
     };
     let mut taken: Vec<(&str, Option<PathBuf>)> =
         inputs.iter().map(|path| ("an input", place(path))).collect();

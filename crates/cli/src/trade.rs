@@ -40,21 +40,15 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
-    let mut inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+    let mut inputs = setup::inputs(&args.input.path, &args.scene);
     inputs.extend(args.reference.as_deref());
     let written = FILES.map(|name| args.output.join(name));
     let mut outputs: Vec<(&str, Option<&Path>)> =
         written.iter().map(|path| ("-o", Some(path.as_path()))).collect();
     outputs.push(("--json", args.global.json.as_deref()));
     setup::check_distinct(&outputs, &inputs)?;
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(
-        field,
-        &args.surface,
-        &args.lights,
-        setup::Unlit::Daylight(None),
-        args.global.quiet,
-    )?;
+    let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
+    let scene = setup::scene(field, &args.scene, setup::Unlit::Daylight(None), args.global.quiet)?;
     if args.reference.is_none() {
         setup::check_choice(&scene, args.bounces, "trade without --reference")?;
     }
@@ -71,8 +65,8 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         let expected = "an .exr: other formats clip bright values";
         return Err(Error::setting("--reference", path.display().to_string(), expected));
     }
-    let lit = Some((&args.lights, &args.surface, &scene));
-    let mut scene_metadata = setup::asked(&args.input, &args.surface.field, lit);
+    let lit = Some((&args.scene, &scene));
+    let mut scene_metadata = setup::asked(&args.input, &args.scene.field, lit);
     if args.bounces > 0 {
         scene_metadata.push(("bounces".to_owned(), args.bounces.to_string()));
     }
@@ -133,7 +127,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     write(args, &report)?;
     if !args.global.quiet {
-        setup::say_light(&args.lights, &scene, None);
+        setup::say_light(&args.scene.lights, &scene, None);
         report.print();
         crate::say!("{}", args.output.join(FILES[0]).display());
     }
@@ -157,7 +151,7 @@ fn check_folder(path: &Path) -> Result<()> {
     if !path.is_dir() {
         return crate::bake::check_new(path);
     }
-    let wrong = |source| Error::Io { path: path.to_owned(), source };
+    let wrong = |source| Error::io(path, source);
     for entry in std::fs::read_dir(path).map_err(wrong)? {
         let name = entry.map_err(wrong)?.file_name();
         if !FILES.iter().any(|f| name == *f) {
@@ -174,7 +168,7 @@ fn write(args: &TradeArgs, report: &Report) -> Result<()> {
     if let Err(source) = std::fs::create_dir(&args.output)
         && source.kind() != std::io::ErrorKind::AlreadyExists
     {
-        return Err(Error::Io { path: args.output.clone(), source });
+        return Err(Error::io(&args.output, source));
     }
     files::write_text(&args.output.join(FILES[2]), &csv)?;
     files::write_json(&args.output.join(FILES[1]), &json)?;

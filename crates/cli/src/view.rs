@@ -26,11 +26,8 @@ use opening::{Opening, Reading};
 use script::Step;
 
 pub fn run(args: &ViewArgs) -> Result<Outcome> {
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
-        let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
-        setup::check_distinct(&[("--json", Some(json.as_path()))], &inputs)?;
-    }
+    let inputs = setup::inputs(&args.input.path, &args.scene);
+    setup::check_outputs(&[("--json", args.global.json.as_deref(), &["json"])], &inputs)?;
     args.exposure.map_or(Ok(()), |e| crate::render::check_positive("--exposure", e))?;
     let quality = args.quality.quality()?;
     std::thread::scope(|scope| {
@@ -42,10 +39,10 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
 
 /// Reads the field and checks the request.
 fn load(args: &ViewArgs, quality: Quality) -> Result<(Scene, Quality)> {
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);
-    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
-    setup::tinted(&mut scene, &args.surface);
+    let mut scene = setup::scene(field, &args.scene, unlit, args.global.quiet)?;
+    setup::tinted(&mut scene, &args.scene);
     let still = setup::wanted(&[]);
     let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);
     setup::check_plan(&args.global, picture)?;
@@ -57,10 +54,9 @@ fn load(args: &ViewArgs, quality: Quality) -> Result<(Scene, Quality)> {
 
 /// Shows the window from now on. An error of the field comes before one of the window.
 fn show(args: &ViewArgs, reading: Reading<'_>) -> Result<Outcome> {
-    let prepared = prepare(args);
-    let (events, steps) = match prepared {
+    let (events, steps) = match prepare(args) {
         Ok(prepared) => prepared,
-        Err(error) => return opening::joined(reading).and(Err(error)),
+        Err(error) => return opening::joined(reading.join()).and(Err(error)),
     };
     let mut opening = Opening::new(args, steps, reading);
     let ended = events.run_app(&mut opening).map_err(no_display);

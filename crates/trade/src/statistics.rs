@@ -79,6 +79,7 @@ pub fn median_interval(samples: &[f64]) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::basis::random::{STEP, mixed, unit};
 
     /// Ranks of published tables for 95 %: n and k (Conover, Practical Nonparametric Statistics, table A3: 6 and 1, 10
     /// and 2, 20 and 6, 30 and 10). Beside 1,000 values both rules agree.
@@ -104,10 +105,8 @@ mod tests {
     fn confidence_intervals_cover_the_median() {
         let mut state = 1_u64;
         let mut draw = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            -(1.0 - (state >> 11) as f64 / (1_u64 << 53) as f64).ln()
+            state = state.wrapping_add(STEP);
+            -(1.0 - unit(mixed(state))).ln()
         };
         let sets = 2000;
         let held = (0..sets)

@@ -1,7 +1,7 @@
 use clap::Args;
 use ridgelight::scene::SETTINGS;
 
-use super::values::{ERROR, MILLISECONDS, SEED, number};
+use super::values::{ERROR, MILLISECONDS, SEED, number, whole};
 
 /// Settings that `--max-error` and `--time-budget` choose: all but hull storage and the number of bounces.
 fn chosen() -> impl Iterator<Item = &'static str> {
@@ -19,18 +19,18 @@ pub struct AutoArgs {
     ///
     /// Renders up to 16 frames, or 18 if two have exact horizons, and the chosen one again. Skips settings expected to
     /// take more than 30 s. If no settings reach the error, the command is refused and names the closest ones.
-    #[arg(long, value_name = "E", value_parser = number::<f64>(ERROR), allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = chosen())]
+    #[arg(long, value_name = "E", value_parser = number::<f64>(ERROR), conflicts_with = "time_budget", conflicts_with_all = chosen())]
     pub max_error: Option<f64>,
     /// Choose the most accurate settings within this GPU time per frame on this device
     ///
     /// Renders the chosen frame again to check the time, and reports its error. Settings that an earlier run chose are not
     /// measured again; --no-cache does.
-    #[arg(long, value_name = "MS", value_parser = number::<f64>(MILLISECONDS), allow_negative_numbers = true, hide_short_help = true, conflicts_with_all = chosen())]
+    #[arg(long, value_name = "MS", value_parser = number::<f64>(MILLISECONDS), hide_short_help = true, conflicts_with_all = chosen())]
     pub time_budget: Option<f64>,
     /// Seed of the texels that measure the error, 0 to 4294967295; 0 by default
     ///
     /// Another seed measures at other texels. With --max-error or --time-budget.
-    #[arg(long, value_name = "S", value_parser = number::<u32>(SEED), allow_negative_numbers = true, help_heading = "Expert")]
+    #[arg(long, value_name = "S", value_parser = whole(SEED), help_heading = "Expert")]
     pub seed: Option<u32>,
     /// Choose settings again, though an earlier run chose some for the same scene and goal
     ///

@@ -1,9 +1,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use ridgelight::scene::Scatter;
 
-use super::values::{SEED, curvatures, grid, number};
-use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
+use super::values::{SEED, curvatures, grid, number, whole};
+use super::{GlobalArgs, Input, QualityArgs, SceneArgs};
 use crate::bake::{self, Format, Kind, Normals};
 
 #[derive(Args)]
@@ -58,7 +59,7 @@ pub struct BakeArgs {
     ///
     /// A spherical Fibonacci set: on the upper hemisphere for ellipses alone, else on the whole sphere. Fewer are coarser;
     /// each takes one word per texel on the device.
-    #[arg(long, value_name = "N", value_parser = number::<u32>("a whole number from 4 to 4096"), allow_negative_numbers = true, help_heading = "Quality", hide_short_help = true)]
+    #[arg(long, value_name = "N", value_parser = number::<u32>("a whole number from 4 to 4096"), help_heading = "Quality", hide_short_help = true)]
     pub directions: Option<u32>,
     /// Zenith angles times azimuths of lights and views, 2..64 x 4..256, 4096 in all [default: 8x16, with btf 3x8]
     ///
@@ -75,18 +76,16 @@ pub struct BakeArgs {
     /// Paths of scattered light, 1 to 4096 [default: 256]
     ///
     /// Fewer are faster and less exact. Texels with the same surroundings have the same error.
-    #[arg(long, value_name = "N", value_parser = number::<u32>("a whole number from 1 to 4096"), allow_negative_numbers = true, help_heading = "Quality", hide_short_help = true)]
+    #[arg(long, value_name = "N", value_parser = whole(Scatter::PATHS), help_heading = "Quality", hide_short_help = true)]
     pub paths: Option<u32>,
     /// Seed of path directions and of the angle pairs that check a table [default: 0]
-    #[arg(long, value_name = "N", value_parser = number::<u32>(SEED), allow_negative_numbers = true, help_heading = "Expert")]
+    #[arg(long, value_name = "N", value_parser = whole(SEED), help_heading = "Expert")]
     pub seed: Option<u32>,
     /// Print the files, their bytes and the memory needed; runs nothing
     #[arg(long, help_heading = "Output")]
     pub plan: bool,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]

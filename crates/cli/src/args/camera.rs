@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::values::{colour, number, numbers};
+use super::values::{colour, number, numbers, sides};
 
 // A doc comment on this struct or the next would replace the description of a command.
 #[derive(Args)]
@@ -28,7 +28,6 @@ pub struct EyeArgs {
         value_name = "DEG",
         default_value_t = 40.0,
         value_parser = number::<f64>("an angle, degrees"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera"
     )]
@@ -49,7 +48,6 @@ pub struct EyeArgs {
         long,
         value_name = "SHARE",
         value_parser = number::<f32>("a share from 0 to 1"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera"
     )]
@@ -68,7 +66,6 @@ pub struct CameraArgs {
         value_name = "N",
         default_value_t = 4,
         value_parser = number::<u32>("a whole number: 1, 2, 4 or 8"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera",
         help_heading = "Camera"
@@ -82,7 +79,6 @@ pub struct CameraArgs {
         value_name = "N",
         default_value_t = 1,
         value_parser = number::<u32>("a whole number from 1 to 1024"),
-        allow_negative_numbers = true,
         requires = "camera",
         help_heading = "Expert"
     )]
@@ -124,7 +120,7 @@ pub struct LookAt {
     pub height_m: Option<f64>,
 }
 
-/// Columns and rows.
+/// Columns and rows. An alias, because the parser takes arrays for lists.
 pub type Size = [u32; 2];
 
 /// Elevation of a camera that is given by its direction alone, degrees.
@@ -167,11 +163,8 @@ fn place(text: &str) -> Result<LookAt, String> {
 }
 
 fn size(text: &str) -> Result<Size, String> {
-    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|s| s.parse().ok()).collect();
-    match (sides.as_slice(), text.split(['x', 'X', '×']).count()) {
-        (&[width, height], 2) => Ok([width, height]),
-        _ => Err("WIDTHxHEIGHT, two whole numbers, as 1280x720".into()),
-    }
+    let expected = "WIDTHxHEIGHT, two whole numbers, as 1280x720";
+    sides(text, &['x', 'X', '×']).ok_or_else(|| expected.to_owned())
 }
 
 #[cfg(test)]

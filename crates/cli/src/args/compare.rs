@@ -40,7 +40,6 @@ pub struct CompareArgs {
         default_value_t = 1.0,
         value_name = "FACTOR",
         value_parser = number::<f32>(FACTOR),
-        allow_negative_numbers = true,
         conflicts_with = "horizons"
     )]
     pub exposure: f32,
@@ -51,7 +50,6 @@ pub struct CompareArgs {
         long,
         value_name = "N",
         value_parser = number::<f64>("a number from 1 to 1000"),
-        allow_negative_numbers = true,
         conflicts_with = "horizons",
         help_heading = "Output"
     )]
@@ -79,28 +77,28 @@ const SHARE: &str = "a number, 0 or more, without %: 0.01 is 1 %";
 #[command(next_help_heading = "Bounds on every channel, each 0 or more")]
 pub struct Bounds {
     /// Largest RMSE relative to the mean of B (0.01 is 1 %)
-    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), conflicts_with = "horizons")]
     pub max_rmse: Option<f64>,
     /// Largest |mean of A - B| relative to the mean of B
-    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), conflicts_with = "horizons")]
     pub max_mean_shift: Option<f64>,
     /// Largest 99th percentile of |A - B| relative to the mean of B
-    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), conflicts_with = "horizons")]
     pub max_p99: Option<f64>,
     /// Largest |A - B| of any texel relative to the mean of B
-    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), conflicts_with = "horizons")]
     pub max_worst: Option<f64>,
     /// Largest mean FLIP of a picture (R, G and B, or Y), 0 (same look) to 1
-    #[arg(long, value_name = "X", value_parser = number::<f64>("a number from 0 to 1"), allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>("a number from 0 to 1"), conflicts_with = "horizons")]
     pub max_flip: Option<f64>,
     /// With --horizons: largest median of |A - B|, degrees
-    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), requires = "horizons")]
     pub max_median_deg: Option<f64>,
     /// With --horizons: largest 99.9th percentile of |A - B|, degrees
-    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), requires = "horizons")]
     pub max_p999_deg: Option<f64>,
     /// With --horizons: largest |A - B| of any horizon, degrees
-    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), requires = "horizons")]
     pub max_worst_deg: Option<f64>,
 }
 

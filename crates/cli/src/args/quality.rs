@@ -2,19 +2,25 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use clap::{Arg, ArgMatches, Args};
 use ridgelight::Result;
 use ridgelight::scene::{Audience, Quality, SETTINGS, Setting, Values};
 
 use crate::scene_file::SceneFile;
 use crate::setup::flags_in;
 
-/// Values of all settings.
+// A doc comment on this struct would replace the description of a command.
+#[derive(Args)]
+#[command(args = SETTINGS.iter().map(arg))]
 pub struct QualityArgs {
+    /// Values of all settings.
+    #[arg(skip)]
     values: Vec<(&'static Setting, String)>,
     /// Settings that the user wrote on the command line, and the first value of each.
+    #[arg(skip)]
     pub written: Vec<(String, String)>,
     /// Names of the settings that the command line or the scene file gives.
+    #[arg(skip)]
     given: Vec<String>,
 }
 
@@ -22,6 +28,7 @@ impl QualityArgs {
     /// # Errors
     /// The first value that its setting does not take.
     pub fn quality(&self) -> Result<Quality> {
+        debug_assert!(!self.values.is_empty(), "the command remembers its settings");
         let mut quality = Quality::default();
         for (setting, value) in &self.values {
             setting.set(&mut quality, value)?;
@@ -34,8 +41,12 @@ impl QualityArgs {
         self.given.iter().any(|given| given == setting)
     }
 
-    /// Records which settings the user wrote: values alone do not differ from defaults or from a scene file's.
+    /// Takes all values, and which settings the user wrote: values alone do not differ from defaults or from a scene file's.
     pub fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
+        let value = |setting: &'static Setting| {
+            Some((setting, matches.get_one::<String>(setting.name)?.clone()))
+        };
+        self.values = SETTINGS.iter().filter_map(value).collect();
         let written = matches.ids().map(clap::Id::as_str).filter_map(|id| {
             let is_word = matches.value_source(id) == Some(ValueSource::CommandLine);
             let by_user = is_word && !scene.gave(id);
@@ -86,34 +97,5 @@ fn arg(setting: &'static Setting) -> Arg {
         Values::Words(all) => arg.value_name(value_name).value_parser(PossibleValuesParser::new(
             all.iter().map(|word| PossibleValue::new(word.name).help(word.summary())),
         )),
-    }
-}
-
-impl Args for QualityArgs {
-    fn augment_args(command: Command) -> Command {
-        command.args(SETTINGS.iter().map(arg))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for QualityArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
-        let value = |setting: &'static Setting| {
-            let value = matches.get_one::<String>(setting.name).cloned();
-            (setting, value.unwrap_or_else(|| setting.get(&Quality::default())))
-        };
-        let values = SETTINGS.iter().map(value).collect();
-        Ok(Self { values, written: Vec::new(), given: Vec::new() })
-    }
-
-    fn update_from_arg_matches(
-        &mut self,
-        matches: &ArgMatches,
-    ) -> std::result::Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
     }
 }

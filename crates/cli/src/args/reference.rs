@@ -2,8 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{BOUNCES, ERROR, SEED, number};
-use super::{EyeArgs, GlobalArgs, Input, LightArgs, SurfaceArgs};
+use super::values::{BOUNCES, ERROR, SEED, count, number, whole};
+use super::{EyeArgs, GlobalArgs, Input, SceneArgs};
 
 const PLINTH_HELP: &str =
     "Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]";
@@ -34,12 +34,12 @@ pub struct ReferenceArgs {
     /// Paths per texel, in batches of 64, at least 128
     ///
     /// Fewer are noisier. The standard error falls with the square root of their number or faster.
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = number::<u32>("a whole number, 1 or more"), allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = count, help_heading = "Quality")]
     pub spp: u32,
     /// Bounces of indirect light, 0 to 64; 0 is direct light
     ///
     /// Fewer leave hollows darker; more take time in proportion.
-    #[arg(long, value_name = "B", default_value_t = 0, value_parser = number::<u32>(BOUNCES), allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = number::<u32>(BOUNCES), help_heading = "Quality")]
     pub bounces: u32,
     /// Normals of the ground between grid points
     ///
@@ -50,15 +50,13 @@ pub struct ReferenceArgs {
     ///
     /// The bound includes unsampled light. Stops after 512 paths at the earliest. If --spp ends the run first, the command
     /// writes the file, warns, and exits with status 1.
-    #[arg(long, value_name = "E", value_parser = number::<f64>(ERROR), allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, value_name = "E", value_parser = number::<f64>(ERROR), help_heading = "Quality")]
     pub until_error: Option<f64>,
     /// Seed of the paths, 0 to 4294967295
-    #[arg(long, value_name = "S", default_value_t = 0, value_parser = number::<u32>(SEED), allow_negative_numbers = true, help_heading = "Expert")]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = whole(SEED), help_heading = "Expert")]
     pub seed: u32,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub camera: EyeArgs,
     /// Whether the camera is that of a scene file, which has no notes on keys without effect.

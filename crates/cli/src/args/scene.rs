@@ -32,7 +32,6 @@ pub struct LightArgs {
         value_name = "DEG",
         default_value_t = 0.0,
         value_parser = angle,
-        allow_negative_numbers = true,
         hide_short_help = true,
         requires = "env"
     )]
@@ -96,7 +95,9 @@ impl LightArgs {
 }
 
 #[derive(Args)]
-pub struct SurfaceArgs {
+pub struct SceneArgs {
+    #[command(flatten)]
+    pub lights: LightArgs,
     #[command(flatten)]
     pub field: FieldArgs,
     /// Diffuse reflectance, 0 to 1. Default 1
@@ -132,7 +133,7 @@ pub struct SurfaceArgs {
     pub specular: Option<SpecularArg>,
 }
 
-impl SurfaceArgs {
+impl SceneArgs {
     /// The text of --albedo, or its default.
     pub fn albedo(&self) -> &str {
         self.albedo.as_deref().unwrap_or("1")
@@ -155,7 +156,6 @@ pub struct FieldArgs {
         long,
         value_name = "S",
         value_parser = number::<f64>("a finite number other than 0"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
     )]
@@ -168,7 +168,6 @@ pub struct FieldArgs {
         long,
         value_name = "VALUE",
         value_parser = number::<f64>("a height, or nan"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
     )]
@@ -180,7 +179,6 @@ pub struct FieldArgs {
         long,
         value_name = "N",
         value_parser = number::<u32>("a whole number, 1 or more"),
-        allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
     )]

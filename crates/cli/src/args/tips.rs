@@ -20,11 +20,15 @@ const OF_GDALDEM: [(&[&str], &str, &str); 3] = [
 
 /// Replaces clap's tip, where we have a better one for the words of a command line.
 pub fn add(mut error: clap::Error, parser: &Command, words: &[OsString]) -> clap::Error {
-    let tip = match error.kind() {
-        ErrorKind::UnknownArgument => {
-            negative_camera(&error, parser, words).or_else(|| of_gdaldem(&error, parser, words))
+    let tip = match (error.kind(), error.get(ContextKind::InvalidArg)) {
+        (ErrorKind::UnknownArgument, Some(ContextValue::String(found))) => {
+            let command = words.iter().skip(1).find_map(|word| parser.find_subcommand(word));
+            let has = |id: &str| {
+                command.is_some_and(|command| command.get_arguments().any(|arg| arg.get_id() == id))
+            };
+            negative_camera(found, &has, words).or_else(|| of_gdaldem(found, &has))
         }
-        ErrorKind::MissingRequiredArgument => missing_input(words),
+        (ErrorKind::MissingRequiredArgument, _) => missing_input(words),
         _ => None,
     };
     if let Some(tip) = tip {
@@ -34,29 +38,19 @@ pub fn add(mut error: clap::Error, parser: &Command, words: &[OsString]) -> clap
     error
 }
 
-fn of_gdaldem(error: &clap::Error, parser: &Command, words: &[OsString]) -> Option<String> {
-    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else {
-        return None;
-    };
-    let command = words.iter().skip(1).find_map(|word| parser.find_subcommand(word))?;
-    let has = |id: &str| command.get_arguments().any(|arg| arg.get_id().as_str() == id);
+fn of_gdaldem(found: &str, has: &dyn Fn(&str) -> bool) -> Option<String> {
     let mut all = OF_GDALDEM.iter();
-    let (_, _, tip) =
-        all.find(|(theirs, ours, _)| theirs.contains(&found.as_str()) && has(ours))?;
+    let (_, _, tip) = all.find(|(theirs, ours, _)| theirs.contains(&found) && has(ours))?;
     Some((*tip).to_owned())
 }
 
 /// `--camera -10,40`: clap takes the value for a flag, and reports `-1`.
-fn negative_camera(error: &clap::Error, parser: &Command, words: &[OsString]) -> Option<String> {
+fn negative_camera(found: &str, has: &dyn Fn(&str) -> bool, words: &[OsString]) -> Option<String> {
     let at = words.iter().position(|word| word == "--camera")?;
     let value = words.get(at + 1)?.to_str()?;
-    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else {
-        return None;
-    };
-    let is_it = value.starts_with(found.as_str()) && value.starts_with('-');
-    let command = words.iter().skip(1).find_map(|word| parser.find_subcommand(word))?;
-    let has_camera = command.get_arguments().any(|arg| arg.get_id() == "camera");
-    (is_it && has_camera).then(|| format!("a value that begins with - needs =: --camera={value}"))
+    let is_it = value.starts_with(found) && value.starts_with('-');
+    (is_it && has("camera"))
+        .then(|| format!("a value that begins with - needs =: --camera={value}"))
 }
 
 /// `info --json dem.tif`: the input was taken for the file to write.

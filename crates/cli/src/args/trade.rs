@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{BOUNCES, ERROR, MILLISECONDS, count, number};
-use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
+use super::{GlobalArgs, Input, SceneArgs};
 
 #[derive(Args)]
 pub struct TradeArgs {
@@ -15,9 +15,7 @@ pub struct TradeArgs {
     #[arg(short, long, value_name = "DIR", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     /// Ground truth of this scene, .exr
     ///
     /// The layer "standard_error" is subtracted from the errors. A header of another scene is refused, and
@@ -25,7 +23,7 @@ pub struct TradeArgs {
     #[arg(long, help_heading = "Quality", value_name = "FILE")]
     pub reference: Option<PathBuf>,
     /// Bounces of indirect light, 0 to 64; above 0 only with --reference
-    #[arg(long, help_heading = "Quality", value_name = "B", default_value_t = 0, value_parser = number::<u32>(BOUNCES), allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Quality", value_name = "B", default_value_t = 0, value_parser = number::<u32>(BOUNCES))]
     pub bounces: u32,
     /// Seconds after which no further settings are measured
     ///
@@ -35,14 +33,13 @@ pub struct TradeArgs {
         help_heading = "Quality",
         value_name = "SECONDS",
         default_value_t = 120.0,
-        value_parser = number::<f64>("1 to 1000000 seconds"),
-        allow_negative_numbers = true
+        value_parser = number::<f64>("1 to 1000000 seconds")
     )]
     pub budget: f64,
     /// Stop after this many measured settings instead of --budget
     ///
     /// Does the same work on every machine.
-    #[arg(long, help_heading = "Quality", value_name = "N", conflicts_with = "budget", value_parser = count, allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Quality", value_name = "N", conflicts_with = "budget", value_parser = count)]
     pub evaluations: Option<u32>,
     /// Recommend the fastest settings within this relative RMSE (0.01 is 1 %)
     ///
@@ -52,14 +49,13 @@ pub struct TradeArgs {
         help_heading = "Quality",
         value_name = "E",
         value_parser = number::<f64>(ERROR),
-        allow_negative_numbers = true,
         conflicts_with = "time_budget"
     )]
     pub max_error: Option<f64>,
     /// Recommend the most accurate settings within this GPU time per frame, milliseconds
     ///
     /// Exit status 1 if no settings reach it.
-    #[arg(long, help_heading = "Quality", value_name = "MS", value_parser = number::<f64>(MILLISECONDS), allow_negative_numbers = true)]
+    #[arg(long, help_heading = "Quality", value_name = "MS", value_parser = number::<f64>(MILLISECONDS))]
     pub time_budget: Option<f64>,
     #[command(flatten)]
     pub global: GlobalArgs,

@@ -1,6 +1,8 @@
 //! Parses values of the command line. An error holds only what was expected; [`Cli::read`](super::Cli::read) adds the flag
 //! and the value. The library checks ranges unless a function here does.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::horizon::Fourier;
@@ -9,17 +11,30 @@ use crate::horizon::Fourier;
 pub const ERROR: &str = "a number above 0, without %: 0.01 is 1 %";
 pub const MILLISECONDS: &str = "a number of milliseconds above 0";
 pub const FACTOR: &str = "a number above 0";
-pub const SEED: &str = "a whole number from 0 to 4294967295";
 pub const BOUNCES: &str = "a whole number from 0 to 64";
-pub const AZIMUTHS: &str = "a whole number from 4 to 1024";
-/// Expected of the side of the fractal field of `bench`.
-pub const SIDE: &str = "a whole number from 1 to 32768";
+pub const SEED: RangeInclusive<u32> = 0..=u32::MAX;
+pub const AZIMUTHS: RangeInclusive<u32> = 4..=1024;
+/// Sides of the fractal field of `bench`. The largest needs 8 GiB of heights while it is made.
+pub const SIDE: RangeInclusive<usize> = 1..=32_768;
 
 /// A parser of one number.
 pub fn number<T: FromStr + 'static>(
     expected: &'static str,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
     move |text| text.parse().map_err(|_| expected.to_owned())
+}
+
+/// A parser of a whole number within a range.
+pub fn whole<T>(
+    range: RangeInclusive<T>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("a whole number from {} to {}", range.start(), range.end()))
+    }
 }
 
 /// An angle in degrees, within what the library accepts: a million radians.
@@ -33,13 +48,15 @@ pub fn count(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| *n > 0).ok_or_else(|| "a whole number, 1 or more".to_owned())
 }
 
+/// Two numbers with a mark between them, as 8x16.
+pub fn sides<T: FromStr>(text: &str, marks: &[char]) -> Option<[T; 2]> {
+    let parts: Option<Vec<T>> = text.split(marks).map(|part| part.parse().ok()).collect();
+    parts?.try_into().ok()
+}
+
 /// Two counts, as 8x16.
 pub fn grid(text: &str) -> Result<[usize; 2], String> {
-    let parts: Option<Vec<usize>> = text.split('x').map(|part| part.parse().ok()).collect();
-    match parts.unwrap_or_default().as_slice() {
-        [first, second] => Ok([*first, *second]),
-        _ => Err("two whole numbers, as 8x16".into()),
-    }
+    sides(text, &['x']).ok_or_else(|| "two whole numbers, as 8x16".to_owned())
 }
 
 /// Numbers separated by commas; none if a part is not a number.
@@ -47,7 +64,7 @@ pub fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(|part| part.trim().parse().ok()).collect()
 }
 
-fn grey_or_colour(text: &str) -> Option<[f32; 3]> {
+pub fn grey_or_colour(text: &str) -> Option<[f32; 3]> {
     match numbers(text)?.as_slice() {
         [grey] => Some([*grey as f32; 3]),
         [r, g, b] => Some([*r as f32, *g as f32, *b as f32]),
@@ -75,17 +92,22 @@ pub fn sky(text: &str) -> Result<SkyArg, String> {
     }
 }
 
-pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
-    grey_or_colour(text)
-}
-
-/// Curvatures outwards and inwards; one number is both.
-pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
+/// Two numbers; one number is both.
+fn one_or_two(text: &str, expected: &str) -> Result<[f64; 2], String> {
     match numbers(text).as_deref() {
         Some([both]) => Ok([*both; 2]),
-        Some([outwards, inwards]) => Ok([*outwards, *inwards]),
-        _ => Err("OUT or OUT,IN, numbers above 0 in 1/m".into()),
+        Some([first, second]) => Ok([*first, *second]),
+        _ => Err(expected.to_owned()),
     }
+}
+
+/// Curvatures outwards and inwards.
+pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
+    one_or_two(text, "OUT or OUT,IN, numbers above 0 in 1/m")
+}
+
+pub fn cell(text: &str) -> Result<[f64; 2], String> {
+    one_or_two(text, "X or X,Y in metres")
 }
 
 /// Phong specular: one for the whole field, or a file.
@@ -119,21 +141,9 @@ pub fn fourier(text: &str) -> Result<Fourier, String> {
 }
 
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {
-    let parts: Option<Vec<u32>> = text.split('x').map(|part| part.parse().ok()).collect();
-    match parts.unwrap_or_default().as_slice() {
-        [width, height] if (1..=16384).contains(width) && (1..=16384).contains(height) => {
-            Ok([*width, *height])
-        }
-        _ => Err("WxH, two whole numbers from 1 to 16384".into()),
-    }
-}
-
-pub fn cell(text: &str) -> Result<[f64; 2], String> {
-    match numbers(text).as_deref() {
-        Some([both]) => Ok([*both; 2]),
-        Some([x, y]) => Ok([*x, *y]),
-        _ => Err("X or X,Y in metres".into()),
-    }
+    let is_side = |side: &u32| (1..=16384).contains(side);
+    let both = sides(text, &['x']).filter(|both: &[u32; 2]| both.iter().all(is_side));
+    both.ok_or_else(|| "WxH, two whole numbers from 1 to 16384".to_owned())
 }
 
 /// A box: west, south, east, north.
@@ -167,7 +177,17 @@ mod tests {
     use clap::Arg;
     use clap::error::ErrorKind;
 
+    use super::whole;
     use crate::args::{of_value, parser};
+
+    #[test]
+    fn whole_numbers_end_where_their_range_does() {
+        let parse = whole(4..=1024_u32);
+        assert!(parse("4") == Ok(4) && parse("1024") == Ok(1024));
+        for text in ["3", "1025", "-4", "4.5", "x", ""] {
+            assert_eq!(parse(text), Err("a whole number from 4 to 1024".to_owned()), "{text}");
+        }
+    }
 
     /// Each flag of numbers explains what it expects instead of `1%`, and takes `-5` for its value.
     #[test]

@@ -2,23 +2,18 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args};
+use clap::Args;
 
 use super::values::{FACTOR, number, pixels};
-use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
+use super::{GlobalArgs, Input, QualityArgs, SceneArgs, Size};
 use crate::scene_file::Request;
-
-/// Columns and rows. An alias, because the parser takes arrays for lists.
-pub type Pixels = [u32; 2];
 
 #[derive(Args)]
 pub struct ViewArgs {
     #[command(flatten)]
     pub input: Input,
     #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     /// Factor on radiance before the tone curve [default: puts the 99th percentile of luminance at 0.8]
@@ -27,13 +22,12 @@ pub struct ViewArgs {
         hide_short_help = true,
         help_heading = "Output",
         value_name = "FACTOR",
-        value_parser = number::<f32>(FACTOR),
-        allow_negative_numbers = true
+        value_parser = number::<f32>(FACTOR)
     )]
     pub exposure: Option<f32>,
     /// Width and height of the window, pixels
     #[arg(long, help_heading = "Output", default_value = "1024x768", value_name = "WxH", value_parser = pixels, allow_hyphen_values = true)]
-    pub size: Pixels,
+    pub size: Size,
     /// Keys, drags and frames from a file, for tests
     #[arg(long, value_name = "FILE", hide = true)]
     pub script: Option<PathBuf>,
@@ -45,10 +39,4 @@ pub struct ViewArgs {
     /// What the user gave, to save scenes with.
     #[arg(skip)]
     pub asked: Request,
-}
-
-impl ViewArgs {
-    pub fn remember(&mut self, matches: &ArgMatches) {
-        self.asked = Request::of(matches);
-    }
 }

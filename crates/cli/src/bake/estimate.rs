@@ -144,16 +144,13 @@ fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<
     let mut small = Job {
         scene: &piece,
         quality: &quality,
-        limits: job.limits,
         scatter,
         around: &around,
         angles: fewer(job),
-        curvature: job.curvature,
-        normals: job.normals,
         pairs: job.pairs.div_ceil(PART),
-        seed: job.seed,
         table: OnceCell::new(),
         maps: Vec::new(),
+        ..*job
     };
     small.lay_out(request::wanted(args)?)?;
     let stages = Stages::new(ProgressBar::hidden(), small.stages()?);

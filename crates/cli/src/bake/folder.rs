@@ -20,14 +20,12 @@ type FileNotes = (String, Vec<String>);
 fn listed(path: &Path) -> Result<Vec<FileNotes>> {
     let text = match std::fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        text => text.map_err(|source| Error::Io { path: path.to_owned(), source })?,
+        text => text.map_err(|source| Error::io(path, source))?,
     };
     let kinds = serde_json::from_slice(&text).ok().and_then(|manifest| kinds(&manifest));
-    kinds.ok_or_else(|| Error::File {
-        path: path.to_owned(),
-        place: "maps".into(),
-        found: "no list of kinds and their files".into(),
-        expected: "a manifest that `bake` wrote, or a folder without this file".into(),
+    kinds.ok_or_else(|| {
+        let expected = "a manifest that `bake` wrote, or a folder without this file";
+        Error::file(path, "maps", "no list of kinds and their files", expected)
     })
 }
 
@@ -83,7 +81,7 @@ pub fn check_new(path: &Path) -> Result<()> {
     if path.exists() {
         return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
     }
-    let parent = parent(path);
+    let parent = setup::folder_of(path);
     if !parent.is_dir() {
         let expected = format!("a folder {} that exists", parent.display());
         return Err(Error::setting("-o", shown(), expected));
@@ -99,10 +97,6 @@ pub fn check_memory(bytes: u64) -> Result<()> {
         needs: format!("{bytes} bytes of memory in this process (see --plan)"),
         limit: "what this machine has".into(),
     })
-}
-
-fn parent(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Removes files of an earlier bake that this one has not written: surplus azimuths, other formats.

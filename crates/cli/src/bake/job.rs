@@ -10,7 +10,7 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 use ridgelight_bake::{Angles, HorizonSums};
 
-use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table, stage};
+use super::kinds::{self, Kind, Map, Normals, Source, Table, stage};
 use super::map::Wanted;
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
@@ -183,14 +183,6 @@ impl<'a> Job<'a> {
         maps.fold(own, u64::saturating_add)
     }
 
-    /// Kinds that trace directions.
-    fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
-        self.kinds().filter_map(|kind| match kind.source {
-            Source::Directions(of) => Some(of),
-            _ => None,
-        })
-    }
-
     /// Refuses a .ktx2 with more layers than an image of the device can have.
     pub fn check_layers(&self, limits: &Limits) -> Result<()> {
         let most = limits.image_layers;
@@ -244,8 +236,10 @@ impl<'a> Job<'a> {
         if self.has(|kind| matches!(kind.source, Source::SkyView)) {
             all.push(maps::sky_view_plan(self.field(), self.border(), self.quality, limits)?);
         }
-        for of in self.of_directions() {
-            all.push((of.plan)(self, limits)?);
+        for kind in self.kinds() {
+            if let Source::Directions(of) = kind.source {
+                all.push((of.plan)(self, limits)?);
+            }
         }
         for kind in self.kinds() {
             if let Source::Light(of) = kind.source {

@@ -201,7 +201,14 @@ pub struct OfLight {
     /// without those of the table.
     pub stages: fn(&Job, bool) -> Result<Vec<Stage>>,
     /// Writes the files and reports each stage.
-    pub make: fn(&mut Headless, &Job, &mut MapFiles, &Stages) -> Result<()>,
+    pub make: fn(&mut Making, &mut MapFiles) -> Result<()>,
+}
+
+/// What light is made with.
+pub struct Making<'a> {
+    pub gpu: &'a mut Headless,
+    pub job: &'a Job<'a>,
+    pub stages: &'a Stages,
 }
 
 impl Kind {
@@ -392,7 +399,8 @@ pub static KINDS: [Kind; 15] = [
         decoder: decoder!("brdf_factors"),
         map: brdf::factors,
         source: Source::Light(OfLight {
-            stages: brdf::factors_stages,
+            // Each factor is an eigenvector of the table.
+            stages: |job, is_made| brdf::shorter_stages(job, is_made, FACTORS),
             make: brdf::make_factors,
             ..TABLE
         }),
@@ -406,7 +414,7 @@ pub static KINDS: [Kind; 15] = [
         decoder: decoder!("brdf_harmonics"),
         map: brdf::harmonics,
         source: Source::Light(OfLight {
-            stages: brdf::harmonics_stages,
+            stages: |job, is_made| brdf::shorter_stages(job, is_made, job.sh_order().pow(2)),
             make: brdf::make_harmonics,
             ..TABLE
         }),
@@ -422,7 +430,7 @@ pub static KINDS: [Kind; 15] = [
         map: brdf::btf,
         source: Source::Light(OfLight {
             bytes: far_field::bytes_of_views,
-            stages: brdf::btf_stages,
+            stages: |job, _| brdf::lights_stages(job, 0, 1),
             make: brdf::make_btf,
             ..TABLE
         }),

@@ -86,6 +86,13 @@ impl Wanted {
         (0..=last).map(|level| size.map(|n| (n >> level).max(1))).collect()
     }
 
+    /// Bytes of all mip levels of a layer of its textures.
+    fn layer_bytes(&self, size: [usize; 2]) -> u64 {
+        let images = self.level_sizes(size).into_iter();
+        let images = images.map(|size| self.stored().image_bytes(size).unwrap_or(u64::MAX));
+        images.fold(0, u64::saturating_add)
+    }
+
     fn texels(&self) -> TexelFormat {
         // Three components become four: devices need not sample three-component textures.
         let count = self.encoding.components;
@@ -114,13 +121,9 @@ impl Wanted {
             Format::Tif => (1, zipped(values / 3 * 4)),
             Format::Npy => (1, values + 256),
             Format::Ktx2 | Format::Dds => {
-                let levels = self.level_sizes(size);
                 // Texts and, of a .ktx2, the places of the levels and the gaps before them.
-                let head = 1024 + 64 * levels.len() as u64;
-                let images = levels
-                    .into_iter()
-                    .map(|size| self.stored().image_bytes(size).unwrap_or(u64::MAX));
-                let layer = images.fold(0, u64::saturating_add);
+                let head = 1024 + 64 * self.level_sizes(size).len() as u64;
+                let layer = self.layer_bytes(size);
                 (1, layer.saturating_mul(layers as u64).saturating_add(head))
             }
             Format::Png => (layers, zipped((texel + 2) * grid_points)),
@@ -152,9 +155,7 @@ impl Wanted {
         if !self.formats.iter().any(|format| format.is_texture()) {
             return of_texels;
         }
-        let images = self.level_sizes(size).into_iter();
-        let images = images.map(|size| self.stored().image_bytes(size).unwrap_or(u64::MAX));
-        images.fold(of_texels + self.coding_bytes(size), u64::saturating_add)
+        (of_texels + self.coding_bytes(size)).saturating_add(self.layer_bytes(size))
     }
 
     /// GLSL: comments on what it does not read, the constants, then the decoder.
@@ -323,12 +324,9 @@ impl<'a> MapFiles<'a> {
         let levels = self.levels(planes);
         let picture = self.picture(planes, scale);
         let (voids, field) = (self.voids(), self.field);
-        let masked = |plane: &&[f32]| {
-            let mut plane = plane.to_vec();
-            if voids.is_some() {
-                crate::setup::mask_voids(field, &mut plane, 1);
-            }
-            plane
+        let masked = |plane: &&[f32]| match voids {
+            Some(_) => crate::setup::masked(field, plane.to_vec()),
+            None => plane.to_vec(),
         };
         let first = self.taken * self.wanted.encoding.values;
         let (size, form, texts) = (self.size(), self.picture_form(), self.picture_texts(scale));

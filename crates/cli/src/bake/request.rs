@@ -249,11 +249,5 @@ pub fn check_uses(args: &BakeArgs) -> Result<()> {
             return Err(Error::setting(name, value, format!("--what {by}: no other kind uses it")));
         }
     }
-    // Some kinds split them into parts.
-    if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
-        let expected =
-            format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
-        return Err(Error::setting("--paths", paths.to_string(), expected));
-    }
     Ok(())
 }

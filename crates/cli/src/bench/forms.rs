@@ -9,7 +9,6 @@ use ridgelight::plan::{self, Limits, Pass, Picture, Plan};
 use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::scalar_sweep::ScalarSweep;
-use ridgelight_trade::statistics::{Summary, median_interval};
 
 use super::progress::Progress;
 use super::rows::{Row, figure, sums};
@@ -219,18 +218,11 @@ fn in_turn(
     let mut ours = Row::of(&form.name, "isolated", plan, &passes, azimuths, times);
     let scalar_name = scalar_name(&form.name);
     ours.settings.push((SCALAR_BESIDE.into(), scalar_name.clone()));
+    let times = (scalar_ns.len(), &scalar_ns[..]);
     let rival = Row {
-        pass: scalar_name,
-        mode: "isolated",
-        size: plan.size,
-        azimuths: SCALAR_AZIMUTHS,
         settings: vec![("threads".into(), scalar.threads().to_string())],
-        runs: scalar_ns.len(),
-        times: Summary::of(&scalar_ns),
-        interval: median_interval(&scalar_ns),
-        bytes: 0,
         work: scalar.points() * u64::from(SCALAR_AZIMUTHS),
-        copy_rate: None,
+        ..Row::of(scalar_name, "isolated", plan, &[], SCALAR_AZIMUTHS, times)
     };
     Ok([ours, rival])
 }

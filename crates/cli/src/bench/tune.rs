@@ -11,6 +11,7 @@ use ridgelight_trade::statistics::{median, median_interval};
 use serde_json::{Value, json};
 
 use super::progress::at_most_s;
+use super::warm_up;
 use crate::args::TuneArgs;
 use crate::setup::{self, Outcome, tuned};
 
@@ -28,10 +29,6 @@ const HOPELESS: f64 = 1.25;
 const FASTER: f64 = 0.98;
 /// Azimuths swept together, beside all of them.
 const TOGETHER: [u32; 3] = [8, 16, 32];
-/// Largest side of the fractal field.
-const LARGEST_SIZE: usize = 16_384;
-/// A GPU's clocks take some tenths of a second to rise.
-const GPU_WARM_UP: Duration = Duration::from_millis(300);
 
 /// A form and its time over that of the untuned one.
 struct Trial {
@@ -99,10 +96,6 @@ impl Search<'_> {
 pub fn run(args: &TuneArgs) -> Result<Outcome> {
     let global = &args.global;
     global.json.as_ref().map_or(Ok(()), |path| setup::check_output("--json", path, &["json"]))?;
-    if !(1..=LARGEST_SIZE).contains(&args.size) {
-        let expected = format!("a whole number from 1 to {LARGEST_SIZE}");
-        return Err(Error::setting("--size", args.size.to_string(), expected));
-    }
     // aimed-nearest shades fast, so the sweep is a larger share of the time.
     let fuse = Fuse::AimedNearest;
     let quality = Quality { azimuths: args.azimuths, fuse, ..Quality::default() };
@@ -171,9 +164,10 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
     tuned::keep(&device, &kept.map_or(untuned, |trial| trial.form))?;
     if !global.quiet {
         crate::say!("{}, {}", device.name, device.driver);
-        let (size, base) = (size_text(scene, quality), text(&untuned));
+        let (cols, rows, base) = (scene.field.cols(), scene.field.rows(), text(&untuned));
         crate::say!(
-            "time of a frame of {size}, relative to the untuned form ({base}), with the 95 % interval:"
+            "time of a frame of {cols} × {rows}, {} azimuths, relative to the untuned form ({base}), with the 95 % interval:",
+            args.azimuths
         );
         trials.iter().for_each(|trial| crate::say!("{}", line(trial)));
         let again = last.as_ref().map(|trial| format!("again:\n{}\n", line(trial)));
@@ -201,28 +195,21 @@ fn left_s(pair_s: f64, forms: usize) -> f64 {
 
 /// Every form but the untuned one.
 fn forms(untuned: SweepForm) -> Vec<SweepForm> {
-    let of = |lines_each: u32, hulls: &[(bool, u32)]| {
-        let group_sizes = [32, 64, 128].map(|lines| lines / lines_each);
-        let hulls = hulls.to_vec();
-        group_sizes.into_iter().flat_map(move |group_size| {
-            let form = move |(shares_hull, hull_depth)| {
+    let mut all = Vec::new();
+    for (lines_each, hulls) in [
+        (4, [(false, 32), (false, 128), (true, 16), (true, 64)]),
+        (1, [(true, 8), (true, 16), (true, 32), (false, 64)]),
+    ] {
+        for group_size in [32, 64, 128].map(|lines| lines / lines_each) {
+            for (shares_hull, hull_depth) in hulls {
                 let private_depth = if lines_each == 1 && shares_hull { 64 } else { 1 };
-                let azimuths = u32::MAX;
-                SweepForm {
-                    lines_each,
-                    group_size,
-                    shares_hull,
-                    hull_depth,
-                    private_depth,
-                    azimuths,
-                }
-            };
-            hulls.clone().into_iter().map(form)
-        })
-    };
-    let four = of(4, &[(false, 32), (false, 128), (true, 16), (true, 64)]);
-    let one = of(1, &[(true, 8), (true, 16), (true, 32), (false, 64)]);
-    four.chain(one).filter(|form| text(form) != text(&untuned)).collect()
+                let form = SweepForm { lines_each, group_size, private_depth, ..untuned };
+                all.push(SweepForm { shares_hull, hull_depth, azimuths: u32::MAX, ..form });
+            }
+        }
+    }
+    all.retain(|form| text(form) != text(&untuned));
+    all
 }
 
 /// Whether a form is one that this program tries, so that a file of another version is not taken.
@@ -248,11 +235,7 @@ fn pairs(
     let one = |frame: &mut Frame| -> Result<f64> {
         Ok(gpu.draw(frame)?.iter().map(|timing| timing.ns).sum())
     };
-    let begun = Instant::now();
-    while !gpu.report().limits.is_cpu && begun.elapsed() < GPU_WARM_UP {
-        one(base)?;
-        one(frame)?;
-    }
+    warm_up(gpu, || Ok((one(base)?, one(frame)?)))?;
     let begun = Instant::now();
     let mut ratios = Vec::new();
     while ratios.len() < most && (ratios.len() < FEWEST || begun.elapsed() < time) {
@@ -273,11 +256,6 @@ fn pairs(
 
 fn bits(gpu: &mut Headless, frame: &Frame) -> Result<Vec<u32>> {
     Ok(gpu.pixels(frame, 0)?.values.into_iter().map(f32::to_bits).collect())
-}
-
-fn size_text(scene: &Scene, quality: &Quality) -> String {
-    let (cols, rows) = (scene.field.cols(), scene.field.rows());
-    format!("{cols} × {rows}, {} azimuths", quality.azimuths)
 }
 
 fn text(form: &SweepForm) -> String {

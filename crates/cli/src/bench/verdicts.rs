@@ -30,12 +30,7 @@ enum Verdict {
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Faster => "FASTER",
-            Self::Slower => "SLOWER",
-            Self::Same => "SAME",
-            Self::Unsure => "UNSURE",
-        })
+        f.pad(&format!("{self:?}").to_uppercase())
     }
 }
 

@@ -408,6 +408,12 @@ pub mod tests {
         (3..48 * 48).step_by(61).collect()
     }
 
+    /// The plan of a picture and its layers of lights.
+    pub fn layered(scene: &Scene, quality: &Quality) -> Plan {
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        plan::picture(scene, quality, &Limits::lavapipe(), wanted).unwrap()
+    }
+
     /// A fractal field of this size.
     pub fn scene(size: usize, lights: Lights) -> Scene {
         Scene { field: fractal(size, 1).unwrap(), surface: Surface::default(), lights }

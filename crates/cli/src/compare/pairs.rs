@@ -50,7 +50,7 @@ pub fn read(path: &Path, renamed: &mut Renamed) -> Result<Planes> {
 /// are names, and by their range.
 pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
     let wrong = |place: String, found: String, expected: &str| {
-        Err(Error::File { path: path.to_owned(), place, found, expected: expected.to_owned() })
+        Err(Error::file(path, place, found, expected))
     };
     let is_azimuth = |name: &&String| {
         // Until 0.1 the names were horizon.000.000 and so on, counter-clockwise from east.
@@ -88,12 +88,8 @@ pub fn pixels_per_degree(args: &CompareArgs) -> f64 {
 
 /// An error: the result does not match the reference.
 pub fn unlike(args: &CompareArgs, place: &str, found: String, expected: String) -> Error {
-    Error::File {
-        path: args.result.clone(),
-        place: place.to_owned(),
-        found,
-        expected: format!("{expected} as in {}", args.reference.display()),
-    }
+    let expected = format!("{expected} as in {}", args.reference.display());
+    Error::file(&args.result, place, found, expected)
 }
 
 impl<'a> Pairs<'a> {

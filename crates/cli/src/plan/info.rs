@@ -7,7 +7,7 @@ use ridgelight_io as files;
 use ridgelight_io::FieldFile;
 use serde_json::{Value, json};
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::args::{FieldArgs, InfoArgs};
 use crate::plan::start::{self, Start};
@@ -23,11 +23,7 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
     let json = args.global.json.as_deref();
     let is_printed = json == Some(Path::new(STANDARD_OUTPUT));
     let file = json.filter(|_| !is_printed);
-    if let Some(file) = file {
-        setup::check_output("--json", file, &["json"])?;
-        let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
-        setup::check_distinct(&[("--json", Some(file))], &inputs)?;
-    }
+    setup::check_outputs(&[("--json", file, &["json"])], &args.input.paths())?;
     let read = setup::read(&args.input.path, &args.surface)?;
     let facts = facts(&read)?;
     if let Some(file) = file {
@@ -191,34 +187,23 @@ fn say_start(args: &InfoArgs, read: &FieldFile) -> Result<()> {
     for path in &args.input.path {
         command += &format!(" {}", setup::terminal::quoted(&path.display().to_string()));
     }
-    let FieldArgs { cell, z_scale, nodata, band, mut bbox, .. } = args.surface;
-    if let Some([x, y]) = cell {
-        command += &format!(" --cell {x},{y}");
-    } else if !read.stored.has_cell_size {
-        command += " --cell X,Y";
-    }
-    if let Some(z_scale) = z_scale {
-        command += &format!(" --z-scale {z_scale}");
-    }
-    if let Some(nodata) = nodata {
-        command += &format!(" --nodata {nodata}");
-    }
-    if let Some(band) = band {
-        command += &format!(" --band {band}");
-    }
-    if let Start::Part(part) = start {
-        bbox = Some(part);
-    }
-    if let Some([west, south, east, north]) = bbox {
-        command += &format!(" --bbox {west},{south},{east},{north}");
-    }
-    if let Some(device) = &args.global.device {
-        command += &format!(" --device {}", setup::terminal::quoted(device));
-    }
-    match (start, args.global.memory_budget) {
-        (Start::Budget(gib), _) => command += &format!(" --memory-budget {gib}GiB"),
-        (_, Some(bytes)) => command += &format!(" --memory-budget {bytes}"),
-        _ => {}
+    let FieldArgs { cell, z_scale, nodata, band, bbox, .. } = args.surface;
+    let unknown = (!read.stored.has_cell_size).then(|| "X,Y".to_owned());
+    let (bbox, budget) = match (start, args.global.memory_budget) {
+        (Start::Part(part), bytes) => (Some(part), bytes.map(|bytes| bytes.to_string())),
+        (Start::Budget(gib), _) => (bbox, Some(format!("{gib}GiB"))),
+        (_, bytes) => (bbox, bytes.map(|bytes| bytes.to_string())),
+    };
+    for (flag, value) in [
+        ("cell", cell.map(|cell| cell.map(|side| side.to_string()).join(",")).or(unknown)),
+        ("z-scale", z_scale.map(|factor| factor.to_string())),
+        ("nodata", nodata.map(|height| height.to_string())),
+        ("band", band.map(|number| number.to_string())),
+        ("bbox", bbox.map(|bbox| bbox.map(|side| side.to_string()).join(","))),
+        ("device", args.global.device.as_deref().map(setup::terminal::quoted)),
+        ("memory-budget", budget),
+    ] {
+        command += &value.map_or_else(String::new, |value| format!(" --{flag} {value}"));
     }
     crate::say!("{command} -o picture.png");
     if cell.is_none() && !read.stored.has_cell_size {

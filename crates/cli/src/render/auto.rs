@@ -169,7 +169,7 @@ fn trace(
         if let Some(lost) = frame.plan().find("lost_rays") {
             reference::none_lost(gpu.read(frame, lost)?[0])?;
         }
-        Ok([reference::picture(gpu, frame, 0)?, reference::picture(gpu, frame, 1)?])
+        Ok([super::rgb(&gpu.pixels(frame, 0)?), super::rgb(&gpu.pixels(frame, 1)?)])
     })?;
     let both = means.iter().zip(&errors).take(places.len());
     let light = |c: &[f32; 3]| c.map(f64::from);

@@ -243,7 +243,7 @@ impl CameraView {
         times: &[Timing],
         report: &DeviceReport,
     ) {
-        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        let ms = crate::setup::total_ns(times) / 1e6;
         let [width, height] = self.options.size;
         let name = args.output.display();
         crate::say!(

@@ -1,14 +1,12 @@
 //! Choices of earlier runs, in the user's cache: the same question gets the same settings, at once.
 
-use std::fmt::{self, Write};
-use std::hash::{DefaultHasher, Hasher};
+use std::hash::Hasher;
 use std::path::PathBuf;
 
 use ridgelight::Result;
 use ridgelight::gpu::DeviceReport;
 use ridgelight::plan::{Limits, Picture};
 use ridgelight::scene::{Quality, SETTINGS, Scene};
-use ridgelight_io as files;
 use ridgelight_trade::auto::{Chosen, Goal};
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +82,7 @@ impl Place {
         quality: &Quality,
         wanted: Picture,
     ) -> Self {
-        let mut hash = Hash(tuned::hash(device));
+        let mut hash = tuned::hash(device);
         let Scene { field, surface, lights } = scene;
         // The hash of the surface includes the border.
         let of_scene = [
@@ -93,9 +91,8 @@ impl Place {
             scene_hash::surface(surface),
         ];
         let all = (of_scene, goal, seed, quality, wanted, limits);
-        // Hashing cannot fail.
-        let _ = write!(hash, "{all:?}");
-        let name = format!("choices/{:016x}.json", hash.0.finish());
+        hash.write(format!("{all:?}").as_bytes());
+        let name = format!("choices/{:016x}.json", hash.finish());
         Self(tuned::caches().map(|folder| folder.join(name)))
     }
 
@@ -112,20 +109,6 @@ impl Place {
     /// A folder that cannot be written to.
     pub fn keep(&self, choice: &Choice) -> Result<()> {
         let Some(path) = &self.0 else { return Ok(()) };
-        let folder = path.parent().expect("it was joined");
-        let io = |source| ridgelight::Error::io(folder, source);
-        std::fs::create_dir_all(folder).map_err(io)?;
-        let value = serde_json::to_value(choice).map_err(|e| io(e.into()))?;
-        files::write_json(path, &value)
-    }
-}
-
-/// Hashes text as it is formatted.
-struct Hash(DefaultHasher);
-
-impl fmt::Write for Hash {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.0.write(text.as_bytes());
-        Ok(())
+        tuned::write(path, &serde_json::json!(choice))
     }
 }

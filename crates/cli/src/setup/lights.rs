@@ -187,7 +187,7 @@ fn compass(degrees: f64) -> f64 {
 }
 
 /// Degrees without the rounding from degrees to radians and back.
-fn degrees(rad: f64) -> f64 {
+pub fn degrees(rad: f64) -> f64 {
     (rad.to_degrees() * 1e9).round() / 1e9
 }
 

@@ -5,7 +5,7 @@ use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
 use super::lights::LIGHTS;
-use crate::args::{FieldArgs, Input, LightArgs, SpecularArg, SurfaceArgs};
+use crate::args::{FieldArgs, Input, SceneArgs, SpecularArg};
 use crate::setup::tint::Tint;
 
 /// The program and the field.
@@ -37,42 +37,33 @@ pub fn metadata(gpu: &Headless, field: &HeightField, plan: &Plan) -> Vec<(String
 /// Requested settings that no plan holds.
 pub fn asked(
     input: &Input,
-    surface: &FieldArgs,
-    lit: Option<(&LightArgs, &SurfaceArgs, &Scene)>,
+    field: &FieldArgs,
+    lit: Option<(&SceneArgs, &Scene)>,
 ) -> Vec<(String, String)> {
-    let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
-    let mut all = vec![
-        ("input".to_owned(), input.names()),
-        ("z_scale".to_owned(), surface.factor().to_string()),
-    ];
-    if let Some(nodata) = surface.nodata {
-        all.push(("nodata".to_owned(), nodata.to_string()));
+    let mut all = Vec::new();
+    let mut add = |name: &str, value: Option<String>| {
+        all.extend(value.map(|value| (name.to_owned(), value)));
+    };
+    add("input", Some(input.names()));
+    add("z_scale", Some(field.factor().to_string()));
+    add("nodata", field.nodata.map(|height| height.to_string()));
+    add("band", field.band.map(|number| number.to_string()));
+    add("bbox", field.bbox.map(|bbox| bbox.map(|side| side.to_string()).join(",")));
+    let Some((args, scene)) = lit else { return all };
+    match args.tint {
+        Some(tint) if tint != Tint::None => add("tint", Some(tint.name())),
+        _ => add("albedo", Some(args.albedo().to_owned())),
     }
-    if let Some(band) = surface.band {
-        all.push(("band".to_owned(), band.to_string()));
-    }
-    if let Some(bbox) = surface.bbox {
-        all.push(("bbox".to_owned(), bbox.map(|x| x.to_string()).join(",")));
-    }
-    let Some((args, surface, scene)) = lit else { return all };
-    match surface.tint {
-        Some(tint) if tint != Tint::None => all.push(("tint".to_owned(), tint.name())),
-        _ => all.push(("albedo".to_owned(), surface.albedo().to_owned())),
-    }
-    let specular = surface.specular.as_ref().map(|specular| match specular {
+    let specular = args.specular.as_ref().map(|specular| match specular {
         SpecularArg::Constant(one) => format!("{},{}", one.exponent, one.scale),
         SpecularArg::File(path) => path.display().to_string(),
     });
-    all.extend(specular.map(|text| ("specular".to_owned(), text)));
-    if let Some(sky) = &scene.lights.sky {
-        all.push(("sky".to_owned(), numbers(sky)));
-    } else if scene.lights.environment.is_some() && args.env.is_none() {
-        all.push(("sky".to_owned(), "clear".to_owned()));
-    }
-    if let Some(path) = &args.env {
-        all.push(("env".to_owned(), path.display().to_string()));
-        all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
-    }
+    add("specular", specular);
+    let has_clear_sky = scene.lights.environment.is_some() && args.lights.env.is_none();
+    let clear = has_clear_sky.then(|| "clear".to_owned());
+    add("sky", scene.lights.sky.map(|sky| sky.map(|c| c.to_string()).join(",")).or(clear));
+    add("env", args.lights.env.as_ref().map(|path| path.display().to_string()));
+    add("env_rotate_deg", args.lights.env.as_ref().map(|_| args.lights.env_rotate.to_string()));
     for light in &LIGHTS {
         let words = light.words(&scene.lights).into_iter().enumerate();
         all.extend(words.map(|(i, words)| (format!("{}{}", light.id, i + 1), words)));

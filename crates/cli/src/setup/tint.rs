@@ -108,28 +108,21 @@ pub fn peak(field: &HeightField, tint: Tint, share: f64) -> f64 {
     let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
     let known = colours.into_iter().enumerate().filter(|(i, _)| !is_void(*i));
     let mut all: Vec<f64> = known.map(|(_, colour)| luminance(colour)).collect();
-    if all.is_empty() {
-        return 1.0;
-    }
-    let at = (share * (all.len() - 1) as f64).round() as usize;
-    let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
-    *bright / luminance(lightest)
+    at_share(&mut all, share).map_or(1.0, |bright| bright / luminance(lightest))
+}
+
+/// The value that a share of all does not exceed; none of no values.
+pub fn at_share(all: &mut [f64], share: f64) -> Option<f64> {
+    let at = (share * all.len().checked_sub(1)? as f64).round() as usize;
+    Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// The heights where the tails begin; voids do not count.
 fn range(field: &HeightField) -> [f64; 2] {
     let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
-    let heights = field.heights_m().iter().enumerate();
-    let mut all: Vec<f32> = heights.filter(|(i, _)| !is_void(*i)).map(|(_, h)| *h).collect();
-    if all.is_empty() {
-        return [0.0; 2];
-    }
-    let last = (all.len() - 1) as f64;
-    [TAILS, 1.0 - TAILS].map(|share| {
-        let (_, found, _) =
-            all.select_nth_unstable_by((share * last).round() as usize, f32::total_cmp);
-        f64::from(*found)
-    })
+    let heights = field.heights_m().iter().enumerate().filter(|(i, _)| !is_void(*i));
+    let mut all: Vec<f64> = heights.map(|(_, h)| f64::from(*h)).collect();
+    [TAILS, 1.0 - TAILS].map(|share| at_share(&mut all, share).unwrap_or(0.0))
 }
 
 /// Slope at a grid point by central differences, one-sided at the edge.

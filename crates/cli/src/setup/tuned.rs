@@ -1,7 +1,7 @@
 //! The form of the sweep that `ridgelight tune` found for a device, in the user's cache.
 
 use std::hash::{DefaultHasher, Hasher};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ridgelight::gpu::DeviceReport;
 use ridgelight::plan::{Limits, SweepForm};
@@ -78,9 +78,17 @@ pub fn keep(device: &DeviceReport, form: &SweepForm) -> Result<()> {
         let expected = "an absolute path in XDG_CACHE_HOME or HOME";
         return Err(Error::setting("XDG_CACHE_HOME", "none, and no HOME", expected));
     };
+    write(&path, &json(form))
+}
+
+/// Writes a file of the cache, whose folder may be missing.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn write(path: &Path, value: &Value) -> Result<()> {
     let folder = path.parent().expect("it was joined");
     std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    files::write_json(&path, &json(form))
+    files::write_json(path, value)
 }
 
 /// Forgets the form of an earlier `tune`; whether there was one.

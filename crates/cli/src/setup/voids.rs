@@ -12,3 +12,9 @@ pub fn mask_voids(field: &HeightField, planes: &mut [f32], channels: usize) {
         }
     }
 }
+
+/// A plane with NaN at voids.
+pub fn masked(field: &HeightField, mut plane: Vec<f32>) -> Vec<f32> {
+    mask_voids(field, &mut plane, 1);
+    plane
+}

@@ -51,7 +51,7 @@ impl GroundTruth {
     pub fn read(path: &Path, field: &HeightField) -> Result<Self> {
         let Planes { rows, cols, names, mut planes } = files::read_planes(path)?;
         let wrong = |place: &str, found: String, expected: String| {
-            Err(Error::File { path: path.to_owned(), place: place.to_owned(), found, expected })
+            Err(Error::file(path, place, found, expected))
         };
         if (rows, cols) != (field.rows(), field.cols()) {
             let expected = format!("{} × {}, as the field", field.cols(), field.rows());
@@ -131,12 +131,8 @@ fn unsampled(path: &Path) -> Result<f64> {
     };
     let channels: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
     let Some(channels) = channels.filter(|c| c.iter().all(|v| v.is_finite())) else {
-        return Err(Error::File {
-            path: path.to_owned(),
-            place: format!("header: {name}"),
-            found: text.clone(),
-            expected: "comma-separated finite numbers".to_owned(),
-        });
+        let expected = "comma-separated finite numbers";
+        return Err(Error::file(path, format!("header: {name}"), text, expected));
     };
     Ok((channels.iter().map(|v| v * v).sum::<f64>() / channels.len() as f64).sqrt())
 }

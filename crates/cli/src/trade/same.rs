@@ -7,7 +7,7 @@ use ridgelight::scene::Scene;
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
-use crate::args::albedo_colour;
+use crate::args::grey_or_colour;
 use crate::setup::lights::LIGHTS;
 
 /// Tolerance of numbers that were written and read back as text.
@@ -43,12 +43,8 @@ pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Resul
                 name if gives_none(name) => format!("none: {NO_SETTINGS}"),
                 _ => format!("{} (in this scene)", expected.unwrap_or("none")),
             };
-            return Err(Error::File {
-                path: path.to_owned(),
-                place: format!("header: {name}"),
-                found: found.unwrap_or("none").to_owned(),
-                expected,
-            });
+            let found = found.unwrap_or("none");
+            return Err(Error::file(path, format!("header: {name}"), found, expected));
         }
     }
     if has_flat_bounces(&stated) {
@@ -72,7 +68,9 @@ fn has_flat_bounces(stated: &BTreeMap<String, String>) -> bool {
 fn new_key(name: String) -> String {
     match name.as_str() {
         "phong" => "specular".to_owned(),
-        old if is_numbered(old, "light") => format!("sphere_{old}"),
+        old if old.strip_prefix("light").is_some_and(|n| n.parse::<u32>().is_ok()) => {
+            format!("sphere_{old}")
+        }
         _ => name,
     }
 }
@@ -106,15 +104,11 @@ fn is_aimed(name: &str) -> bool {
     LIGHTS.iter().any(|light| light.is_aimed && light.is_key(name))
 }
 
-fn is_numbered(name: &str, word: &str) -> bool {
-    name.strip_prefix(word).is_some_and(|rest| rest.parse::<u32>().is_ok())
-}
-
 /// Whether two values are equal however they are spelt; a file matches by name, in any folder.
 fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
     let numbers = |text: &str| -> Option<Vec<f64>> {
         if name == "albedo" {
-            return albedo_colour(text).map(|c| c.map(f64::from).to_vec());
+            return grey_or_colour(text).map(|c| c.map(f64::from).to_vec());
         }
         text.split(',').map(|t| t.parse().ok()).collect()
     };

@@ -110,16 +110,14 @@ fn erode(heights: &mut [f64], weights: &[f64], cols: usize, [x, y]: [f64; 2], ra
     heights.iter_mut().zip(&change).for_each(|(h, c)| *h += c);
 }
 
-/// The least rectangle with both.
-pub fn together(a: Rectangle, b: Rectangle) -> Rectangle {
+/// The least rectangle with both; the other where one is none.
+pub fn together(a: Option<Rectangle>, b: Option<Rectangle>) -> Option<Rectangle> {
+    let (Some(a), Some(b)) = (a, b) else { return a.or(b) };
     let (col, row) = (a.col.min(b.col), a.row.min(b.row));
     let end = |a: (u32, u32), b: (u32, u32)| (a.0 + a.1).max(b.0 + b.1);
-    Rectangle {
-        col,
-        row,
-        cols: end((a.col, a.cols), (b.col, b.cols)) - col,
-        rows: end((a.row, a.rows), (b.row, b.rows)) - row,
-    }
+    let cols = end((a.col, a.cols), (b.col, b.cols)) - col;
+    let rows = end((a.row, a.rows), (b.row, b.rows)) - row;
+    Some(Rectangle { col, row, cols, rows })
 }
 
 #[cfg(test)]
@@ -187,8 +185,9 @@ mod tests {
 
     #[test]
     fn the_rectangle_of_two_holds_both() {
-        let a = Rectangle { col: 3, row: 4, cols: 2, rows: 9 };
-        let b = Rectangle { col: 1, row: 6, cols: 10, rows: 2 };
-        assert_eq!(together(a, b), Rectangle { col: 1, row: 4, cols: 10, rows: 9 });
+        let a = Some(Rectangle { col: 3, row: 4, cols: 2, rows: 9 });
+        let b = Some(Rectangle { col: 1, row: 6, cols: 10, rows: 2 });
+        assert_eq!(together(a, b), Some(Rectangle { col: 1, row: 4, cols: 10, rows: 9 }));
+        assert_eq!((together(a, None), together(None, b)), (a, b));
     }
 }

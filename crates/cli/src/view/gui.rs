@@ -27,7 +27,7 @@ pub struct Gui {
     shapes: Vec<ClippedPrimitive>,
     pixels_per_point: f32,
     /// Whether a button went down over the panel and is still held.
-    holds_pointer: bool,
+    pub holds_pointer: bool,
     /// Passes left in which egui may ask for another picture.
     settling: u32,
 }
@@ -58,15 +58,6 @@ impl Gui {
         let at = Pos2::new(x as f32, y as f32) / self.pixels_per_point;
         let layer = self.context.layer_id_at(at);
         layer.is_some_and(|layer| layer.order != egui::Order::Background)
-    }
-
-    /// Whether a button that went down over the panel is still held.
-    pub fn holds_pointer(&self) -> bool {
-        self.holds_pointer
-    }
-
-    pub fn hold_pointer(&mut self, holds: bool) {
-        self.holds_pointer = holds;
     }
 
     /// Whether keys are for the panel: a text field has the focus, or Escape closes a list.

@@ -29,7 +29,8 @@ pub enum Kind {
 /// A field with a moving shape.
 pub struct Moving {
     pub kind: Kind,
-    still: HeightField,
+    /// The field without movement.
+    pub still: HeightField,
     /// Height of all waves together, or of the ridge, metres.
     height_m: f64,
     frames: u32,
@@ -62,11 +63,6 @@ impl Moving {
         self.frames = other.frames;
     }
 
-    /// The field without movement.
-    pub fn still(&self) -> &HeightField {
-        &self.still
-    }
-
     /// The field at the current frame.
     pub fn field(&self) -> Result<HeightField> {
         let seconds = f64::from(self.frames) * FRAME_S;
@@ -85,14 +81,10 @@ impl Moving {
         let voids = field.voids().map(<[bool]>::to_vec);
         HeightField::new(field.rows(), cols, &all, field.cell_m(), voids)
     }
-
-    /// The original field.
-    pub fn end(self) -> HeightField {
-        self.still
-    }
 }
 
-fn side_m(field: &HeightField) -> f64 {
+/// A field's shorter side.
+pub fn side_m(field: &HeightField) -> f64 {
     let [x, y] = field.cell_m();
     (field.cols() as f64 * x).min(field.rows() as f64 * y)
 }
@@ -143,6 +135,6 @@ mod tests {
             field.heights_m().iter().map(|h| f64::from(*h) + field.base_m() - 5.0).collect();
         let highest = (0..201).max_by(|a, b| heights[*a].total_cmp(&heights[*b])).unwrap();
         assert_eq!(highest, 100, "{heights:?}");
-        assert!(moving.end() == still);
+        assert!(moving.still == still);
     }
 }

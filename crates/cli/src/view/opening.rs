@@ -83,7 +83,7 @@ impl<'a, 'scope> Opening<'a, 'scope> {
 
     fn failed(&mut self, events: &ActiveEventLoop, error: Error) {
         // An error of the field comes before one of the window.
-        let of_field = self.reading.take().and_then(|reading| joined(reading).err());
+        let of_field = self.reading.take().and_then(|reading| joined(reading.join()).err());
         self.error.get_or_insert(of_field.unwrap_or(error));
         events.exit();
     }
@@ -124,7 +124,7 @@ impl<'a, 'scope> Opening<'a, 'scope> {
         if let Some(opened) = &mut self.opened
             && let Some(reading) = self.reading.take_if(|reading| reading.is_finished())
         {
-            let (scene, quality) = joined(reading)?;
+            let (scene, quality) = joined(reading.join())?;
             let state = State::new(self.args, scene, quality);
             let mut preview = Preview::new(opened.screen.gpu().report().limits.is_cpu);
             // A script begins without previews.
@@ -155,10 +155,10 @@ pub fn destroyed() -> Error {
     Error::Device { doing: "showing pictures in a window".into(), reason }
 }
 
-/// The thread's result.
-pub fn joined<T>(reading: ScopedJoinHandle<'_, T>) -> T {
+/// A thread's result.
+pub fn joined<T>(result: std::thread::Result<T>) -> T {
     // Goes on with its panic, which it has reported.
-    reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    result.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
 fn name(path: &Path) -> String {

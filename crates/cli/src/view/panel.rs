@@ -33,7 +33,7 @@ pub struct Panel {
 impl Panel {
     /// Shows the panel; nothing where it is hidden.
     pub fn show(&mut self, ui: &mut Ui, state: &State, figures: &Figures) {
-        if state.text() == Text::Nothing {
+        if state.text == Text::Nothing {
             return;
         }
         let height = ui.ctx().viewport_rect().height() - 2.0 * f32::from(MARGIN);
@@ -104,10 +104,10 @@ impl Panel {
             self.places.push(("typing".to_owned(), ui.min_rect()));
         }
         ui.separator();
-        if self.fold(ui, "More settings (Tab)", (state.text(), Text::Settings)) {
+        if self.fold(ui, "More settings (Tab)", (state.text, Text::Settings)) {
             expert.iter().for_each(|of| self.setting(ui, of));
         }
-        if self.fold(ui, "Keys (H)", (state.text(), Text::Keys)) {
+        if self.fold(ui, "Keys (H)", (state.text, Text::Keys)) {
             keys(ui);
         }
     }
@@ -166,7 +166,7 @@ impl Panel {
 
     fn exposure(&mut self, ui: &mut Ui, state: &State) {
         ui.label("Exposure");
-        let mut exposure = state.exposure();
+        let mut exposure = state.exposure;
         ui.horizontal(|ui| {
             ui.spacing_mut().slider_width = 56.0;
             let slider = Slider::new(&mut exposure, EXPOSURES)

@@ -71,8 +71,7 @@ pub enum Button {
 /// # Errors
 /// A file that cannot be read, or an unknown line.
 pub fn read(path: &Path) -> Result<Vec<Step>> {
-    let io = |source| Error::Io { path: path.to_owned(), source };
-    let text = std::fs::read_to_string(path).map_err(io)?;
+    let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
     let mut steps = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -80,15 +79,9 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
             continue;
         }
         steps.push(step(line).ok_or_else(|| {
-            Error::File {
-                path: path.to_owned(),
-                place: format!("line {number}"),
-                found: line.to_owned(),
-                expected:
-                    "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        command, places, shown, paths, preview, rest-preview, rest, report, wait, opening or patience, with its values"
-                        .into(),
-            }
+            let expected = "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
+                command, places, shown, paths, preview, rest-preview, rest, report, wait, opening or patience, with its values";
+            Error::file(path, format!("line {number}"), line, expected)
         })?);
     }
     Ok(steps)

@@ -219,7 +219,7 @@ fn by_cores<T: Send>(blocks: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
             scope.spawn(move || part.map(of).collect::<Vec<T>>())
         };
         let begun: Vec<_> = (0..blocks).step_by(part).map(begin).collect();
-        begun.into_iter().flat_map(joined).collect()
+        begun.into_iter().flat_map(|thread| joined(thread.join())).collect()
     })
 }
 

@@ -15,7 +15,7 @@ use ridgelight::scene::{BounceSpecular, Camera, HeightField, Lights, Quality, Sc
 use ridgelight::{Error, Result};
 
 use super::brush::{Action, Brush};
-use super::moving::{Kind, Moving};
+use super::moving::{Kind, Moving, side_m};
 use super::script::Button;
 use super::smaller::Blocks;
 use super::strokes::Strokes;
@@ -23,13 +23,12 @@ use crate::args::ViewArgs;
 use crate::render::{NIGHT_SHARE, exposure, white};
 use crate::scene_file::Request;
 use crate::setup;
-use settings::{Refused, Settings};
+use settings::Settings;
 use viewpoint::{FOV_DEG, Viewpoint};
 
 pub use changes::Change;
 pub use figures::{Figures, KEYS};
 pub use painting::Mark;
-pub use settings::said;
 
 /// The effect of a key or of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +38,7 @@ pub enum Wish {
     Show,
     /// Other light or another field.
     Light,
-    /// Other heights in a rectangle: [`State::take_edited`].
+    /// Other heights in a rectangle: [`State::edited`].
     Heights,
     /// Measures the error against the reference.
     Error,
@@ -74,8 +73,9 @@ pub struct State {
     pub scene: Scene,
     pub quality: Quality,
     asked: Request,
-    moving: Option<Moving>,
-    exposure: f32,
+    /// The movement, if there is one.
+    pub moving: Option<Moving>,
+    pub exposure: f32,
     /// [`crate::render::white`] of the field as it was read.
     white: f64,
     /// Whether the window started with a sun below the horizontal and no other light.
@@ -87,13 +87,13 @@ pub struct State {
     /// Whether the environment is the clear sky around the first sun.
     has_clear_sky: bool,
     viewpoint: Viewpoint,
-    text: Text,
+    pub text: Text,
     settings: Settings,
     tool: Tool,
     brush: Brush,
     strokes: Strokes,
     /// Where heights have changed since they were last taken.
-    edited: Option<Rectangle>,
+    pub edited: Option<Rectangle>,
     /// The current end of the stroke that is being drawn, absolute.
     stroke_m: [f64; 2],
     /// The chosen sphere light.
@@ -107,9 +107,9 @@ pub struct State {
 
 impl State {
     pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
-        let has_clear_sky = scene.lights.environment.is_some() && args.lights.env.is_none();
-        let white = white(&scene.field, setup::tint_of(&args.surface));
-        let starts_at_night = setup::is_night(&args.lights, &scene.lights);
+        let has_clear_sky = scene.lights.environment.is_some() && args.scene.lights.env.is_none();
+        let white = white(&scene.field, setup::tint_of(&args.scene));
+        let starts_at_night = setup::is_night(&args.scene.lights, &scene.lights);
         let mut state = Self {
             scene,
             white,
@@ -134,7 +134,7 @@ impl State {
             is_split: false,
             message: None,
         };
-        state.brush.radius_m = (state.side_m() / 16.0).max(state.brush_radii_m()[0]);
+        state.brush.radius_m = (side_m(&state.scene.field) / 16.0).max(state.brush_radii_m()[0]);
         state
     }
 
@@ -156,9 +156,7 @@ impl State {
     /// Returns to the last light that could be drawn, and shows why.
     pub fn go_back(&mut self, light: Light, why: Error) {
         (self.quality, self.scene.lights, self.asked) = light;
-        if let Err(Refused(why)) = said::<()>(Err(why)) {
-            self.message = Some(why);
-        }
+        self.message = Some(setup::in_flags(why).to_string());
     }
 
     /// Takes the exposure that suits a picture, of coarse light or of the full one.
@@ -207,11 +205,6 @@ impl State {
 
     fn has_specular(&self) -> bool {
         self.scene.surface.specular.is_some()
-    }
-
-    /// The movement, if there is one.
-    pub fn moving(&self) -> Option<&Moving> {
-        self.moving.as_ref()
     }
 
     /// Whether heights differ from the file's.
@@ -432,9 +425,8 @@ impl State {
     fn move_by(&mut self, kind: Kind) -> Wish {
         self.strokes.end(&self.scene.field);
         let before = self.moving.take().map(|moving| {
-            let kind = moving.kind;
-            self.scene.field = moving.end();
-            kind
+            self.scene.field = moving.still;
+            moving.kind
         });
         if before != Some(kind) {
             self.moving = Some(Moving::over(self.scene.field.clone(), kind));
@@ -453,12 +445,18 @@ impl State {
     }
 
     fn turn_setting(&mut self, id: &str, ahead: bool) -> Wish {
-        match self.settings.turn(id, ahead, &mut self.asked) {
+        let changed = self.settings.turn(id, ahead, &mut self.asked);
+        self.take_quality(changed)
+    }
+
+    /// Takes changed settings, or shows why they were refused.
+    fn take_quality(&mut self, changed: std::result::Result<Quality, String>) -> Wish {
+        match changed {
             Ok(quality) => {
                 self.quality = quality;
                 Wish::Light
             }
-            Err(Refused(why)) => self.say(&why),
+            Err(why) => self.say(&why),
         }
     }
 

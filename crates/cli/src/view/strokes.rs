@@ -21,7 +21,7 @@ pub struct Strokes {
     done: Vec<Stroke>,
     undone: Vec<Stroke>,
     /// All heights before the current stroke, and the rectangle that it has reached.
-    begun: Option<(Vec<f32>, Option<Rectangle>)>,
+    pub begun: Option<(Vec<f32>, Option<Rectangle>)>,
     /// Whether strokes exist that can no longer be undone.
     is_past: bool,
 }
@@ -31,13 +31,9 @@ impl Strokes {
         self.begun = Some((field.heights_m().to_vec(), None));
     }
 
-    pub fn is_begun(&self) -> bool {
-        self.begun.is_some()
-    }
-
     pub fn reach(&mut self, at: Rectangle) {
         if let Some((_, all)) = &mut self.begun {
-            *all = Some(all.map_or(at, |all| together(all, at)));
+            *all = together(*all, Some(at));
         }
     }
 

@@ -336,17 +336,9 @@ fn by_error(a: &&Trial, b: &&Trial) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::auto::tests::under_sky;
     use crate::trade::start;
-    use ridgelight::scene::{HeightField, Lights, Method, Surface};
-
-    fn scene() -> Scene {
-        let heights: Vec<f64> = (0..144).map(|i| f64::from(i * i % 11)).collect();
-        Scene {
-            field: HeightField::new(12, 12, &heights, [1.0; 2], None).unwrap(),
-            surface: Surface::default(),
-            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-        }
-    }
+    use ridgelight::scene::Method;
 
     fn of(azimuths: u32) -> Quality {
         Quality { method: Method::BruteForce, azimuths, ..start() }
@@ -365,7 +357,7 @@ mod tests {
     /// leaves 1.3 %. With a bound of 0.9 % they are not.
     #[test]
     fn a_bound_far_below_the_goal_steps_back() {
-        let scene = scene();
+        let scene = under_sky(12, 12);
         let fresh = fresh(&scene);
         for (at_most, next) in [(0.006, Some(of(512))), (0.009, None)] {
             let mut chooser = fresh.clone();
@@ -384,7 +376,7 @@ mod tests {
     /// As above with a bound of 0.6 %: a later frame with values beyond f32 changes neither the doubt nor what is rendered next.
     #[test]
     fn frames_beyond_f32_do_not_end_the_search() {
-        let scene = scene();
+        let scene = under_sky(12, 12);
         let mut chooser = fresh(&scene);
         let rough = Measured { error: 0.13, at_most: 0.13 };
         let fine = Measured { error: 0.0, at_most: 0.006 };

@@ -203,15 +203,12 @@ impl<'a> OracleLight<'a> {
 mod tests {
     use super::*;
     use crate::auto::probes::Probes;
-    use ridgelight::scene::{HeightField, Lights, Surface};
+    use crate::auto::tests::under_sky;
+    use ridgelight::scene::Lights;
 
     fn scene() -> Scene {
-        let heights: Vec<f64> = (0..35).map(|i| f64::from(i * i % 11)).collect();
-        Scene {
-            field: HeightField::new(5, 7, &heights, [1.0; 2], None).unwrap(),
-            surface: Surface::default(),
-            lights: Lights { sky: Some([1.0, 2.0, 3.0]), ..Lights::default() },
-        }
+        let lights = Lights { sky: Some([1.0, 2.0, 3.0]), ..Lights::default() };
+        Scene { lights, ..under_sky(5, 7) }
     }
 
     /// The light of texels is the oracle's, in the order of the request, whichever texels are known. A known texel is not computed

@@ -96,9 +96,10 @@ fn point_of(quality: &Quality) -> [f64; SETTINGS] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::auto::tests::under_sky;
     use crate::auto::{Model, Statistics};
     use crate::trade::start;
-    use ridgelight::scene::{Border, Fuse, HeightField, Lights, Lines, Scene, Surface};
+    use ridgelight::scene::{Border, Fuse, Lines};
 
     fn of(azimuths: u32) -> Quality {
         Quality { azimuths, ..start() }
@@ -135,12 +136,8 @@ mod tests {
     /// settings by less than about 5 %.
     #[test]
     fn shared_residuals_predict_settings_without_effect() {
-        let heights: Vec<f64> = (0..144).map(|i| f64::from(i * i % 11)).collect();
-        let scene = Scene {
-            field: HeightField::new(12, 12, &heights, [1.0; 2], None).unwrap(),
-            surface: Surface { border: Border::Periodic, ..Surface::default() },
-            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-        };
+        let mut scene = under_sky(12, 12);
+        scene.surface.border = Border::Periodic;
         let of = |lines: Lines| Quality { azimuths: 8, lines, fuse: Fuse::AimedNearest, ..start() };
         let mut model = Model::of(&scene, &Statistics::of(&scene), 0);
         let measured = 2.0 * model.expected(&of(Lines::FourCells)).error;

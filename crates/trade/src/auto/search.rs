@@ -8,6 +8,7 @@ use super::picks::usable_sum;
 use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::Goal;
+use ridgelight::basis::random::STEP;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Basis, Lines, Method, Quality, Scene, setting};
 use ridgelight::{Error, Result};
@@ -248,7 +249,7 @@ impl<'a, 't> Judge<'a, 't> {
         let Some(bounced) = &mut self.bounced else { return Ok(probes) };
         self.seed = self.seed.wrapping_add(1 << 32);
         // Of both halves, mixed (Steele, Lea & Flood 2014).
-        let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
+        let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(STEP) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.count());
         let unsampled = unsampled_bounce_error(

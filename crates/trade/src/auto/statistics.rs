@@ -216,7 +216,8 @@ fn contrasts(environment: &Environment) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::{KeyLight, Sun, Surface};
+    use crate::auto::tests::lit_by;
+    use ridgelight::scene::{KeyLight, Sun};
 
     /// A plane rising by 0.5 east: mean square of slopes along rows 0.25, along columns 0; the same
     /// roughness at both scales. Relief: 15 steps of 0.5 over a side of 16. Only its own tangent
@@ -225,9 +226,8 @@ mod tests {
     fn a_ramp_has_the_slope_it_has() {
         let heights: Vec<f64> = (0..256).map(|i| 0.5 * (i % 16) as f64).collect();
         let of = |heights: &[f64]| {
-            let field = HeightField::new(16, 16, heights, [1.0; 2], None).unwrap();
             let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-            Statistics::of(&Scene { field, surface: Surface::default(), lights })
+            Statistics::of(&lit_by(lights, [16; 2], |i| heights[i]))
         };
         let s = of(&heights);
         assert!((s.slope - 0.125_f64.sqrt()).abs() < 1e-6, "{s:?}");
@@ -291,10 +291,9 @@ mod tests {
             diameter_rad: 0.01,
             irradiance: [std::f32::consts::TAU; 3],
         };
-        let field = HeightField::new(1, 1, &[3.0], [1.0; 2], None).unwrap();
         let lights =
             Lights { environment: Some(environment), suns: vec![sun], ..Lights::default() };
-        let s = Statistics::of(&Scene { field, surface: Surface::default(), lights });
+        let s = Statistics::of(&lit_by(lights, [1; 2], |_| 3.0));
         assert!((s.sun_share - 0.5).abs() < 1e-6, "{s:?}");
         assert!((s.azimuth_contrast - 0.5 * 7.0_f64.sqrt()).abs() < 1e-6, "{s:?}");
     }

@@ -12,6 +12,19 @@ use ridgelight_cpu::oracle::Oracle;
 
 const SIDE: usize = 12;
 
+/// Heights by grid point, row by row, with cells of 1 m.
+pub fn lit_by(lights: Lights, [rows, cols]: [usize; 2], height: impl Fn(usize) -> f64) -> Scene {
+    let heights: Vec<f64> = (0..rows * cols).map(height).collect();
+    let field = HeightField::new(rows, cols, &heights, [1.0; 2], None).unwrap();
+    Scene { field, surface: Surface::default(), lights }
+}
+
+/// The same under a uniform sky, with uneven heights.
+pub fn under_sky(rows: usize, cols: usize) -> Scene {
+    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    lit_by(sky, [rows, cols], |i| (i * i % 11) as f64)
+}
+
 /// Two peaks under a uniform sky.
 fn scene() -> Scene {
     let height = |i: usize| {
@@ -19,12 +32,7 @@ fn scene() -> Scene {
         let peak = |y: f64, x: f64, h: f64| (h - (r - y).hypot(c - x)).max(0.0);
         peak(4.0, 3.0, 5.0).max(peak(8.0, 9.0, 4.0))
     };
-    let heights: Vec<f64> = (0..SIDE * SIDE).map(height).collect();
-    Scene {
-        field: HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None).unwrap(),
-        surface: Surface::default(),
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    }
+    lit_by(Lights { sky: Some([1.0; 3]), ..Lights::default() }, [SIDE; 2], height)
 }
 
 /// The sky in this many azimuths: nothing else changes the picture. Each takes a millisecond on lines of four cells, more on closer ones.
@@ -276,12 +284,7 @@ fn search_limits_and_bounds_are_reported() {
 #[test]
 fn probes_are_added_up_to_the_affordable_number() {
     const COLS: usize = 20;
-    let heights: Vec<f64> = (0..COLS * COLS).map(|i| (i * i % 11) as f64).collect();
-    let scene = Scene {
-        field: HeightField::new(COLS, COLS, &heights, [1.0; 2], None).unwrap(),
-        surface: Surface::default(),
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    };
+    let scene = under_sky(COLS, COLS);
     let lit = Lit::of(&scene);
     let own = Probes::of(&lit, COLS * COLS, 7, &[]).unwrap().own_error();
     // Well above the rounding of pictures.
@@ -311,12 +314,7 @@ const SEEDS: u64 = 40;
 fn bounds_hold_at_the_stated_confidence() {
     let sun = Sun { azimuth_rad: 0.3, elevation_rad: 0.6, diameter_rad: 0.3, irradiance: [1.0; 3] };
     let height = |i: usize| f64::from(u8::from((18..20).contains(&(i % LARGE)))) * 6.0;
-    let heights: Vec<f64> = (0..LARGE * LARGE).map(height).collect();
-    let scene = Scene {
-        field: HeightField::new(LARGE, LARGE, &heights, [1.0; 2], None).unwrap(),
-        surface: Surface::default(),
-        lights: Lights { suns: vec![sun], ..Lights::default() },
-    };
+    let scene = lit_by(Lights { suns: vec![sun], ..Lights::default() }, [LARGE; 2], height);
     let lit = Lit::of(&scene);
     let ground_truth: Vec<f64> =
         (0..LARGE * LARGE).map(|i| lit.at(i / LARGE, i % LARGE)[0]).collect();

@@ -2,14 +2,13 @@
 //! `brdf-harmonics`, which are the table in short, and `btf`.
 
 use glam::DVec3;
-use ridgelight::gpu::Headless;
 use ridgelight::scene::Border;
 use ridgelight::{Error, Result};
 use ridgelight_bake::{self as bake, Brdf, BrdfHarmonics, Facets, Factors};
 use serde_json::json;
 
 use super::far_field::{LIGHT_UNIT, each_light, is_coarse, largest, light_work, walked};
-use super::{Job, Map, MapFiles, Stage, Stages, Value, Wanted, far_field, stage, take};
+use super::{Job, Making, Map, MapFiles, Stage, Value, Wanted, far_field, stage, take};
 
 /// Light and view pairs at which the table is tested between its angles.
 pub const PAIRS: usize = 64;
@@ -123,7 +122,7 @@ const SHORT: &str = "shorter form";
 
 /// Stages of the light of all triangles towards --angles. `more` counts further
 /// directions of triangle visibility; visible points are found so many times.
-fn lights_stages(job: &Job, more: usize, times: usize) -> Result<Vec<Stage>> {
+pub fn lights_stages(job: &Job, more: usize, times: usize) -> Result<Vec<Stage>> {
     let lights = job.angles.count();
     let mut all = vec![far_field::triangles_stage(job, lights + more)];
     if job.scatter.is_some() {
@@ -143,25 +142,12 @@ pub fn table_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
     Ok(all)
 }
 
-/// Those of the table, and its factors: each is an eigenvector of the table.
-pub fn factors_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
-    shorter_stages(job, is_made, FACTORS)
-}
-
-/// Those of the table, and its sums with the harmonics.
-pub fn harmonics_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
-    shorter_stages(job, is_made, job.sh_order().pow(2))
-}
-
-fn shorter_stages(job: &Job, is_made: bool, terms: usize) -> Result<Vec<Stage>> {
+/// Those of the table, and of a shorter form with so many terms.
+pub fn shorter_stages(job: &Job, is_made: bool, terms: usize) -> Result<Vec<Stage>> {
     let values = (job.angles.count().pow(2) * terms) as f64;
     let mut all = table_stages(job, is_made)?;
     all.push(Stage::new(SHORT, values, "values of the table x terms"));
     Ok(all)
-}
-
-pub fn btf_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
-    lights_stages(job, 0, 1)
 }
 
 /// The table, which three kinds store in different ways.
@@ -173,20 +159,21 @@ pub struct Table {
 }
 
 /// The table of this bake, computed on first use.
-fn table<'a>(gpu: &mut Headless, job: &'a Job, stages: &Stages) -> Result<&'a Table> {
-    if let Some(known) = job.table.get() {
+fn table<'a>(making: &mut Making<'a>) -> Result<&'a Table> {
+    if let Some(known) = making.job.table.get() {
         return Ok(known);
     }
-    let made = compute_table(gpu, job, stages)?;
-    Ok(job.table.get_or_init(|| made))
+    let made = compute_table(making)?;
+    Ok(making.job.table.get_or_init(|| made))
 }
 
 /// Every light's table row by row.
-fn compute_table(gpu: &mut Headless, job: &Job, stages: &Stages) -> Result<Table> {
+fn compute_table(making: &mut Making) -> Result<Table> {
+    let (job, stages) = (making.job, making.stages);
     let directions = job.angles.directions()?;
     let count = directions.count();
     stages.begin(stage::TRIANGLES);
-    let facets = far_field::facets(gpu, job, &directions)?;
+    let facets = far_field::facets(making.gpu, job, &directions)?;
     facets.check().map_err(|error| match error {
         Error::Setting { name, found, expected } if name.starts_with("direction ") => {
             too_few(job, &format!(" with {name}, {found}"), expected)
@@ -195,7 +182,7 @@ fn compute_table(gpu: &mut Headless, job: &Job, stages: &Stages) -> Result<Table
     })?;
     let mut values = Vec::with_capacity(count * count);
     let of = (0..count, &(|_| 0..count) as _);
-    each_light(gpu, job, &facets, of, (stages, stage::LIGHTS), &mut |light, radiance| {
+    each_light(making, &facets, of, stage::LIGHTS, &mut |light, radiance| {
         stages.show(&format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         let of_views = facets.radiance_from_all(&radiance).into_iter();
@@ -206,11 +193,11 @@ fn compute_table(gpu: &mut Headless, job: &Job, stages: &Stages) -> Result<Table
     stages.begin(stage::TRIANGLES);
     let count = job.pairs;
     let pairs = bake::pairs(count, job.seed)?;
-    let of_pairs = bake::facets(gpu, job.scene, facets.times(), &pairs, &job.limits)?;
+    let of_pairs = bake::facets(making.gpu, job.scene, facets.times(), &pairs, &job.limits)?;
     let mut between = Vec::with_capacity(count);
     let own = |light: usize| count + light..count + light + 1;
     let of = (0..count, &own as _);
-    each_light(gpu, job, &of_pairs, of, (stages, BETWEEN), &mut |light, radiance| {
+    each_light(making, &of_pairs, of, BETWEEN, &mut |light, radiance| {
         let [l, v] = [light, count + light].map(|i| pairs.vectors()[i]);
         let mean = of_pairs.radiance_from(count + light, &radiance);
         between.push(([l, v], mean.map(|m| m / l.z)));
@@ -219,27 +206,17 @@ fn compute_table(gpu: &mut Headless, job: &Job, stages: &Stages) -> Result<Table
     Ok(Table { brdf, facets, between })
 }
 
-pub fn make_table(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
-    let table = table(gpu, job, stages)?;
+pub fn make_table(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (job, table) = (making.job, table(making)?);
     let count = job.angles.count();
     let texels = (0..count * count).map(|i| table.brdf.at(i / count, i % count));
     take(files, &texels.collect::<Vec<_>>())?;
     add_entries(job, table, (&|l, v| table.brdf.between(&job.angles, l, v), true), files)
 }
 
-pub fn make_factors(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
-    let table = table(gpu, job, stages)?;
-    stages.begin(SHORT);
+pub fn make_factors(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (job, table) = (making.job, table(making)?);
+    making.stages.begin(SHORT);
     let factors = Factors::of(&table.brdf, job.angles, FACTORS, table.facets.has_specular())?;
     let mut all = factors.values().iter().chain(factors.of_views().unwrap_or_default());
     all.try_for_each(|of_k| take(files, of_k))?;
@@ -247,14 +224,9 @@ pub fn make_factors(
     add_entries(job, table, (&|l, v| factors.at(l, v), true), files)
 }
 
-pub fn make_harmonics(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
-    let table = table(gpu, job, stages)?;
-    stages.begin(SHORT);
+pub fn make_harmonics(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (job, table) = (making.job, table(making)?);
+    making.stages.begin(SHORT);
     let (order, has_specular) = (job.sh_order(), table.facets.has_specular());
     let harmonics = BrdfHarmonics::of(&table.brdf, job.angles, order, has_specular)?;
     take(files, harmonics.coefficients())?;
@@ -361,17 +333,13 @@ pub fn btf(job: &Job, wanted: &Wanted) -> Result<Map> {
     Ok(far_field::views(job, wanted, names, about, "1/sr"))
 }
 
-pub fn make_btf(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
+pub fn make_btf(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (job, stages) = (making.job, making.stages);
     let count = job.angles.count();
     stages.begin(stage::TRIANGLES);
-    let facets = far_field::facets(gpu, job, &job.angles.directions()?)?;
+    let facets = far_field::facets(making.gpu, job, &job.angles.directions()?)?;
     let of = (0..count, &(|_| 0..count) as _);
-    each_light(gpu, job, &facets, of, (stages, stage::LIGHTS), &mut |light, radiance| {
+    each_light(making, &facets, of, stage::LIGHTS, &mut |light, radiance| {
         stages.show(&format!("light {} of {count}", light + 1));
         let mut views = facets.texels_from_all(&radiance).into_iter();
         views.try_for_each(|texels| take(files, &texels))

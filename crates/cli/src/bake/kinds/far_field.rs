@@ -15,7 +15,7 @@ use ridgelight_bake::{Angles, ExitRadiance, Facets};
 use ridgelight_io::Component;
 use serde_json::json;
 
-use super::{Job, Kind, Map, MapFiles, Stage, Stages, Value, Wanted, brdf, light, number, stage};
+use super::{Job, Kind, Making, Map, MapFiles, Stage, Value, Wanted, brdf, light, number, stage};
 
 /// The largest value that the files hold: of f32, or less in a .ktx2.
 pub fn largest(wanted: &Wanted) -> f64 {
@@ -137,19 +137,25 @@ fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
     })
 }
 
-/// Scattered light of one light, towards as many views as are traced together where specular
-/// depends on the view.
-fn scatter_plan(job: &Job, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
+/// Scattered light, towards as many views as are traced together where specular depends on the
+/// view.
+pub fn scatter_plan(job: &Job, scene: &Scene, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
     if specular(job).is_none() {
-        return plan::scatter(job.scene, job.around, scatter, limits);
+        return plan::scatter(scene, job.around, scatter, limits);
     }
-    // Replaces the scene's lights; every sun takes the same work.
-    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 1.0, diameter_rad: 0.0, irradiance: [1.0; 3] };
-    let lights = Lights { suns: vec![sun], ..Lights::default() };
-    let scene = Scene { lights, ..job.scene.clone() };
     let views = job.angles.directions()?;
     let at_once = plan::views_at_once(&scene.field, views.count(), limits);
-    plan::scatter_views(&scene, job.around, scatter, &views.vectors()[..at_once], limits)
+    plan::scatter_views(scene, job.around, scatter, &views.vectors()[..at_once], limits)
+}
+
+/// That of one light. Without specular, the scene's lights take the same work.
+fn scatter_plan_of_one(job: &Job, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
+    if specular(job).is_none() {
+        return scatter_plan(job, job.scene, scatter, limits);
+    }
+    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 1.0, diameter_rad: 0.0, irradiance: [1.0; 3] };
+    let lights = Lights { suns: vec![sun], ..Lights::default() };
+    scatter_plan(job, &Scene { lights, ..job.scene.clone() }, scatter, limits)
 }
 
 /// Visibility of triangles.
@@ -162,7 +168,7 @@ pub fn plans(job: &Job, limits: &Limits) -> Result<Vec<Plan>> {
     let mut all = vec![mask_plan(job, limits)?];
     if let Some(scatter) = &job.scatter {
         all.push(job.points_plan(limits)?);
-        all.push(scatter_plan(job, scatter, limits)?);
+        all.push(scatter_plan_of_one(job, scatter, limits)?);
     }
     Ok(all)
 }
@@ -237,11 +243,10 @@ pub fn facets(gpu: &mut Headless, job: &Job, directions: &Directions) -> Result<
 /// Radiance of all triangles under a light of irradiance 1 from each given direction. Specular goes
 /// towards those views that the light has. `name` is the stage after that of visible points.
 pub fn each_light(
-    gpu: &mut Headless,
-    job: &Job,
+    Making { gpu, job, stages }: &mut Making,
     facets: &Facets,
     (lights, views): (Range<usize>, &dyn Fn(usize) -> Range<usize>),
-    (stages, name): (&Stages, &str),
+    name: &str,
     take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let points = match job.scatter {
@@ -267,7 +272,7 @@ pub struct Walked {
 /// Paths of lights that face the field from one direction each.
 pub fn walked(job: &Job) -> Result<Option<Walked>> {
     let Some(scatter) = &job.scatter else { return Ok(None) };
-    let plan = scatter_plan(job, scatter, &job.limits)?;
+    let plan = scatter_plan_of_one(job, scatter, &job.limits)?;
     Ok(Some(Walked { plan, mirrors_sky: false }))
 }
 

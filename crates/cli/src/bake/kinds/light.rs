@@ -1,13 +1,12 @@
 //! Kinds that the scene's lights illuminate: `scatter` and `light-field`.
 
-use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
 use ridgelight::scene::Scatter;
 use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
 use super::far_field::{self, Walked, direct, direct_plan, mask_plan, points_stage};
-use super::{Job, Map, MapFiles, OfLight, Stage, Stages, Value, Wanted, number, stage, take};
+use super::{Job, Making, Map, MapFiles, OfLight, Stage, Value, Wanted, number, stage, take};
 
 pub const SCATTER: OfLight = OfLight {
     is_lit: true,
@@ -88,12 +87,8 @@ fn scattered_stage(steps: f64) -> Stage {
     Stage::new(stage::SCATTERED, steps, "texels x path steps")
 }
 
-fn make_scatter(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
+fn make_scatter(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (gpu, job, stages) = (&mut *making.gpu, making.job, making.stages);
     stages.begin(stage::DIRECT);
     let lit = direct(gpu, job, job.scene)?;
     // With specular, bounces start from the diffuse light only: specular depends on the receiver.
@@ -172,13 +167,9 @@ pub fn light_field(job: &Job, wanted: &Wanted) -> Result<Map> {
 
 /// Path bounces, towards as many views as are traced together where specular depends on the view.
 fn walked(job: &Job, limits: &Limits) -> Result<Option<Plan>> {
-    if far_field::specular(job).is_none() {
-        let of = |scatter: &Scatter| plan::scatter(job.scene, job.around, scatter, limits);
-        return job.scatter.as_ref().map(of).transpose();
-    }
-    let views = job.angles.directions()?;
-    let views = &views.vectors()[..plan::views_at_once(job.field(), views.count(), limits)];
-    plan::scatter_views(job.scene, job.around, &view_paths(job), views, limits).map(Some)
+    let has_specular = far_field::specular(job).is_some();
+    let scatter = if has_specular { Some(view_paths(job)) } else { job.scatter };
+    scatter.map(|scatter| far_field::scatter_plan(job, job.scene, &scatter, limits)).transpose()
 }
 
 /// Scatter settings with Phong specular, whose direct light is part of the result. Without bounces
@@ -213,12 +204,8 @@ fn light_field_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
     Ok(all)
 }
 
-fn make_light_field(
-    gpu: &mut Headless,
-    job: &Job,
-    files: &mut MapFiles,
-    stages: &Stages,
-) -> Result<()> {
+fn make_light_field(making: &mut Making, files: &mut MapFiles) -> Result<()> {
+    let (gpu, job, stages) = (&mut *making.gpu, making.job, making.stages);
     stages.begin(stage::DIRECT);
     let mut light = direct(gpu, job, &far_field::diffuse(job))?;
     let has_specular = far_field::specular(job).is_some();

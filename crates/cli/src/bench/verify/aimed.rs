@@ -60,14 +60,15 @@ pub(super) fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
     }
 }
 
-/// Light of one sun or key light at one place.
-pub(super) struct Allowed {
+/// Light at one place: of one sun or key light, or R, G, B.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Allowed<T = f64> {
     /// Through the oracle's horizons.
-    pub light: f64,
+    pub light: T,
     /// Least and most, by the method's horizons.
-    pub range: [f64; 2],
+    pub range: [T; 2],
     /// Of rounding.
-    pub tolerance: f64,
+    pub tolerance: T,
 }
 
 /// The allowed light at each place, of a sun of irradiance 1 or a key light of radiance 1 on white ground, in the plan's slices.
@@ -166,25 +167,40 @@ pub(super) struct Judged {
 }
 
 fn judge(found: &[DVec3], all: &[Allowed], quality: &Quality) -> Result<Judged> {
+    let grey = |Allowed { light, range, tolerance }: &Allowed| Allowed {
+        light: DVec3::splat(*light),
+        range: range.map(DVec3::splat),
+        tolerance: DVec3::splat(*tolerance),
+    };
+    let all: Vec<_> = all.iter().map(grey).collect();
+    judge_each("a sun or key light at one place has light", found, &all, quality)
+}
+
+/// Judges each place by its own range.
+pub(super) fn judge_each(
+    what: &str,
+    found: &[DVec3],
+    all: &[Allowed<DVec3>],
+    quality: &Quality,
+) -> Result<Judged> {
     let mut judged = Judged { places: all.len(), ..Judged::default() };
     for (found, Allowed { light, range: [least, most], tolerance }) in found.iter().zip(all) {
-        let range = least - tolerance..=most + tolerance;
-        // NaN is in no range.
-        if let Some(wrong) = found.to_array().into_iter().find(|v| !range.contains(v)) {
-            let [start, end] = [range.start(), range.end()];
-            let what = format!(
-                "a sun or key light at one place has light {wrong:e}, expected {start:e} to {end:e}"
-            );
-            return Err(refused(&what, quality));
+        for c in 0..3 {
+            let [wrong, start, end] = [found[c], least[c] - tolerance[c], most[c] + tolerance[c]];
+            // NaN is in no range.
+            if !(start..=end).contains(&wrong) {
+                let what = format!("{what} {wrong:e}, expected {start:e} to {end:e}");
+                return Err(refused(&what, quality));
+            }
         }
-        let error = (*found - DVec3::splat(*light)).abs().max_element();
-        if error > *tolerance {
+        let error = (*found - *light).abs();
+        if error.cmpgt(*tolerance).any() {
             judged.others += 1;
         } else {
-            judged.error = judged.error.max(error);
+            judged.error = judged.error.max(error.max_element());
         }
-        judged.bound = judged.bound.max(*tolerance);
-        judged.brightest = judged.brightest.max(*most);
+        judged.bound = judged.bound.max(tolerance.max_element());
+        judged.brightest = judged.brightest.max(most.max_element());
     }
     Ok(judged)
 }
@@ -207,8 +223,7 @@ impl Judged {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::verify::tests::scene;
-    use ridgelight::plan::{self, Limits, Picture};
+    use crate::bench::verify::tests::{layered, scene};
     use ridgelight::scene::{Lights, Sun};
 
     fn sun(diameter_rad: f64) -> Sun {
@@ -221,8 +236,7 @@ mod tests {
     fn of(quality: &Quality, is_exact: bool) -> Vec<Allowed> {
         let sun = sun(2_f64.to_radians());
         let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
-        let wanted = Picture { light_layers: true, ..Picture::default() };
-        let plan = plan::picture(&scene, quality, &Limits::lavapipe(), wanted).unwrap();
+        let plan = layered(&scene, quality);
         let (azimuths, shaded) = azimuths_of(&plan, "sun1").expect("a sun");
         let places: Vec<usize> = (0..48 * 48).step_by(5).collect();
         allowed(&scene, &azimuths, Shaded { is_exact, ..shaded }, &places, quality)

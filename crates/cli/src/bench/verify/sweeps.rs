@@ -289,7 +289,7 @@ pub(super) fn white(scene: &Scene, lights: Lights) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::verify::tests::{places, scene};
+    use crate::bench::verify::tests::{layered, places, scene};
     use ridgelight::plan::{self, Limits, Picture};
 
     /// Wrong light is refused: of another fuse, of lines twice as far apart, of one more azimuth.
@@ -316,9 +316,8 @@ mod tests {
             let diameter_rad = 2_f64.to_radians();
             let sun = Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] };
             let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
-            let wanted = Picture { light_layers: true, ..Picture::default() };
-            let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
-            let (azimuths, shaded) = azimuths_of(&plan, "sun1").expect("a sun");
+            let (azimuths, shaded) =
+                azimuths_of(&layered(&scene, &quality), "sun1").expect("a sun");
             let all = aimed(&scene, azimuths, &places(), shift, shaded);
             Wanted(all.into_iter().map(|both| both.expect("no point")).collect())
         };
@@ -359,8 +358,7 @@ mod tests {
         let sun = Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] };
         let scene = scene(48, Lights { suns: vec![sun; 10], ..Lights::default() });
         let quality = Quality { sun_azimuths: 8, ..Quality::default() };
-        let wanted = Picture { light_layers: true, ..Picture::default() };
-        let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
+        let plan = layered(&scene, &quality);
         let split = plan.passes.iter().filter(|p| p.part.starts_with("sun1 ")).count();
         assert!(split > 1, "{split}");
         for light in ["sun1", "sun10"] {

@@ -11,6 +11,7 @@ use ridgelight_viewer::Screen;
 
 use super::super::state::State;
 use super::drawing::{after_new_heights, replan};
+use crate::reference::root_mean_square;
 use crate::render;
 
 /// Paths restart when nothing has changed for so long.
@@ -39,7 +40,7 @@ pub struct Compare {
     /// When the scene changed last.
     changed: Instant,
     /// The measured error, once requested.
-    error: Option<String>,
+    pub error: Option<String>,
 }
 
 /// The path-traced reference, refined in every frame.
@@ -156,11 +157,6 @@ impl Compare {
         ["no shadows".to_owned(), "ours".to_owned(), reference]
     }
 
-    /// For the panel.
-    pub fn lines(&self) -> Vec<String> {
-        self.error.iter().cloned().collect()
-    }
-
     /// Measures the error against the reference so far.
     pub fn find_error(&mut self, screen: &mut Screen, lit: &Frame, state: &State) -> Result<()> {
         let Some(path_traced) =
@@ -234,8 +230,7 @@ fn distance(estimates: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [
     let error = (crossed.max(0.0) + fourth).sqrt() / count;
     let root = square.max(0.0).sqrt();
     let error = if square > error { error / (2.0 * root) } else { error.sqrt() };
-    let unsampled = (unsampled.iter().map(|u| u * u).sum::<f64>() / 3.0).sqrt();
-    let error = error.hypot(unsampled);
+    let error = error.hypot(root_mean_square(unsampled));
     match mean > 0.0 {
         true => [root / mean, error / mean],
         false => [if root > 0.0 { f64::INFINITY } else { 0.0 }, 0.0],
@@ -245,14 +240,15 @@ fn distance(estimates: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::basis::random::{STEP, mixed, unit};
 
     /// Of variance 1: a sum of twelve uniform numbers.
     fn noises() -> impl FnMut() -> f64 {
         let mut state = 1_u64;
         move || {
             let mut even = || {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+                state = state.wrapping_add(STEP);
+                unit(mixed(state)) - 0.5
             };
             (0..12).map(|_| even()).sum()
         }

@@ -8,6 +8,7 @@ use ridgelight::scene::{Camera, HeightField, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Presented, Screen, Viewpoint};
 
+use super::super::brush::together;
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
 use super::preview::{PAUSE, Refined};
@@ -153,7 +154,7 @@ impl App<'_> {
         shown.size = size;
         let moves = self.state.is_moving();
         self.state.step(!uses_preview)?;
-        let mut edited = self.state.take_edited();
+        let mut edited = self.state.edited.take();
         let eye_m = self.state.eye_m();
         shown.is_stale |= std::mem::replace(&mut shown.eye_m, eye_m) != eye_m;
         if uses_preview {
@@ -196,7 +197,7 @@ impl App<'_> {
             Err(why) => return self.fall_back(why).map(|()| None),
         };
         let Some(Presented { pixels, slot, is_taken, .. }) = drawn else {
-            edited.into_iter().for_each(|at| self.state.give_back_edited(at));
+            self.state.edited = together(self.state.edited, edited);
             return Ok(self.stay_blank("it accepts no frames"));
         };
         self.blank = None;
@@ -389,7 +390,7 @@ impl OpenWindow {
     /// Takes the values that the panel shows.
     fn update_figures(&mut self, frame_ms: Option<f64>) {
         self.figures.frame_ms = frame_ms;
-        self.figures.compared = self.compare.as_ref().map_or_else(Vec::new, Compare::lines);
+        self.figures.compared = self.compare.as_ref().and_then(|compare| compare.error.clone());
         let full = self.lit.as_ref().map(Frame::plan);
         self.figures.bytes = full.map_or(0, Plan::bytes) + self.preview.bytes();
         let used = full.filter(|_| !self.preview.is_shown()).map(|plan| &plan.settings);
@@ -399,7 +400,7 @@ impl OpenWindow {
         self.figures.preview = self.preview.line();
         self.figures.progress = self.preview.progress(self.lit.as_ref());
         self.figures.full_s = self.preview.full_s;
-        if let Some(times) = self.preview.take_times() {
+        if let Some(times) = self.preview.complete_times.take() {
             self.figures.light = times;
         }
     }

@@ -107,11 +107,11 @@ impl Level {
             self.scene.lights = Lights { suns, ..Lights::default() };
         }
         self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
-        match (state.moving(), &mut self.moving) {
+        match (&state.moving, &mut self.moving) {
             (Some(full), moving) => {
                 if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind)
                 {
-                    let still = self.blocks.field(full.still())?;
+                    let still = self.blocks.field(&full.still)?;
                     *moving = Some(full.over_other(still));
                 }
                 let moving = moving.as_mut().expect("made above");

@@ -26,7 +26,7 @@ impl App<'_> {
             WindowEvent::CursorMoved { position, .. } if self.held.is_none() => {
                 gui.hear(window, event);
                 let to = [position.x, position.y];
-                let is_for_panel = gui.holds_pointer() || gui.is_at(to);
+                let is_for_panel = gui.holds_pointer || gui.is_at(to);
                 if is_for_panel {
                     self.cursor = to;
                 } else if !is_at {
@@ -36,19 +36,19 @@ impl App<'_> {
                 return Ok(is_for_panel);
             }
             WindowEvent::MouseInput { state: ElementState::Pressed, .. } => {
-                if self.held.is_some() || !(is_at || gui.holds_pointer()) {
+                if self.held.is_some() || !(is_at || gui.holds_pointer) {
                     gui.leave();
                     self.due = self.due.max(1);
                     return Ok(false);
                 }
-                gui.hold_pointer(true);
+                gui.holds_pointer = true;
                 return self.hear_button(event);
             }
             WindowEvent::MouseInput { state: ElementState::Released, .. } => {
-                if !gui.holds_pointer() {
+                if !gui.holds_pointer {
                     return Ok(false);
                 }
-                gui.hold_pointer(false);
+                gui.holds_pointer = false;
                 return self.hear_button(event);
             }
             WindowEvent::MouseWheel { .. } if is_at => gui.hear(window, event),
@@ -112,8 +112,7 @@ impl OpenWindow {
         }
         let (lefts, size) = places(self.size, compare.is_some());
         // If only one picture fits, it is the main one, without a label.
-        let compared =
-            compare.as_ref().filter(|_| lefts.len() > 1 && state.text() != Text::Nothing);
+        let compared = compare.as_ref().filter(|_| lefts.len() > 1 && state.text != Text::Nothing);
         let words = compared.map(|compare| compare.labels());
         let labels = Labels { words: words.as_ref(), lefts: &lefts, size };
         let marks = state.marks(size);

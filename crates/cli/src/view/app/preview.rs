@@ -3,7 +3,6 @@
 
 mod grids;
 
-use std::panic::resume_unwind;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -14,6 +13,7 @@ use ridgelight::scene::Scene;
 use ridgelight_viewer::Screen;
 
 use super::super::brush::together;
+use super::super::opening::joined;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
@@ -67,7 +67,7 @@ enum Running {
 pub struct Preview {
     /// Of the drag preview and of the rest preview.
     levels: [Option<[Level; GRIDS]>; STAGES],
-    sides: Sides,
+    pub sides: Sides,
     /// Grids of a stage that a thread makes, during a drag or at rest.
     next_grids: Option<(usize, JoinHandle<Result<[Ground; GRIDS]>>)>,
     /// Whether grids of the rest preview must be made.
@@ -88,7 +88,8 @@ pub struct Preview {
     times: Vec<Timing>,
     /// Whether the device gave no times of some part of it.
     lacks_times: bool,
-    complete_times: Option<Vec<Timing>>,
+    /// Times of the passes of the last complete preview or full light, until they are taken.
+    pub complete_times: Option<Vec<Timing>>,
     /// Edited since the full light was computed, if nothing else has changed.
     edited: Option<Rectangle>,
     /// Edited while no preview was in use: the levels lack it.
@@ -135,15 +136,9 @@ impl Preview {
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids of the drag preview, and those of the rest preview if it is to have any, by the sides of their blocks: sky,
-    /// sun, slopes. Times then decide nothing.
-    pub fn fix(&mut self, sides: Option<([usize; GRIDS], Option<[usize; GRIDS]>)>) {
-        self.sides.fixed = sides;
-    }
-
     /// An edit that no preview shows.
     pub fn miss(&mut self, at: Rectangle) {
-        self.missed = Some(self.missed.map_or(at, |all| together(all, at)));
+        self.missed = together(self.missed, Some(at));
         self.next_grids = None;
     }
 
@@ -252,10 +247,7 @@ impl Preview {
     ) -> Result<()> {
         self.read_times(state, &mut None);
         (self.next, self.rest_s) = (Next::Nothing, None);
-        self.edited = match (edited, self.edited) {
-            (Some(a), Some(b)) => Some(together(a, b)),
-            (a, b) => a.or(b),
-        };
+        self.edited = together(edited, self.edited);
         self.is_full_stale |= has_new_light || state.is_moving();
         self.times.clear();
         self.lacks_times = false;
@@ -269,7 +261,7 @@ impl Preview {
             // Its heights are stale; it is made again after the full light.
             self.end_stage(REST, screen)?;
         }
-        let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
+        let edited = together(edited, missed);
         let levels = self.levels[DRAG].as_mut().expect("made by fit");
         levels.iter_mut().try_for_each(|level| level.take(state, (edited, has_new_light)))?;
         self.running = Some(Running::Preview(run_levels(levels, screen, state, limits)?));
@@ -293,7 +285,7 @@ impl Preview {
     ) -> Result<Refined> {
         self.read_times(state, full);
         if let Some(thread) = self.next_errors.take_if(|thread| thread.is_finished()) {
-            self.errors = joined(thread);
+            self.errors = joined(thread.join());
         }
         match self.next {
             Next::Nothing => {
@@ -461,21 +453,10 @@ impl Preview {
         }
     }
 
-    /// Times of the passes of the last complete preview or full light, once.
-    pub fn take_times(&mut self) -> Option<Vec<Timing>> {
-        self.complete_times.take()
-    }
-
     pub fn end(&mut self, screen: &mut Screen) -> Result<()> {
         self.running = None;
         (0..STAGES).map(|stage| self.end_stage(stage, screen)).fold(Ok(()), Result::and)
     }
-}
-
-/// The result of a finished thread.
-fn joined<T>(thread: JoinHandle<T>) -> T {
-    // Resumes the thread's panic, which has already been reported.
-    thread.join().unwrap_or_else(|panic| resume_unwind(panic))
 }
 
 /// RMSE over the mean, R, G, B of the means of blocks.

@@ -52,7 +52,7 @@ impl App<'_> {
         }
         let shown = self.shown.as_ref();
         let is_old = |shown: &OpenWindow| {
-            let is_old = shown.is_stale || shown.lit.is_none() || self.state.is_edited();
+            let is_old = shown.is_stale || shown.lit.is_none() || self.state.edited.is_some();
             let is_old = is_old || shown.eye_m != self.state.eye_m();
             is_old || shown.preview.is_busy() || !previews && shown.preview.is_old()
         };
@@ -133,7 +133,7 @@ impl App<'_> {
     pub(super) fn command_line(&self, shown: &OpenWindow) -> String {
         let mut words = vec!["ridgelight".to_owned(), "render".to_owned()];
         words.extend(self.state.asked(shown.size, &shown.limits, None).words());
-        words.push(format!("--exposure={}", self.state.exposure()));
+        words.push(format!("--exposure={}", self.state.exposure));
         words.extend(["-o".to_owned(), self.free_name("png").display().to_string()]);
         words.iter().map(|word| setup::terminal::quoted(word)).collect::<Vec<_>>().join(" ")
     }

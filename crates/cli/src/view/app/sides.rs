@@ -33,7 +33,7 @@ const GPU_RATES: [f64; GRIDS] = [2e7; GRIDS];
 /// Chooses the sides of each grid's blocks, in grid points.
 pub struct Sides {
     pub rates: [f64; GRIDS],
-    /// Where a script gives them: of the drag preview, and of the rest preview if it is to have any.
+    /// Where a script gives them: of the drag preview, and of the rest preview if it is to have any. Times then decide nothing.
     pub fixed: Option<([usize; GRIDS], Option<[usize; GRIDS]>)>,
 }
 

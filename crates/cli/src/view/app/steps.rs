@@ -72,7 +72,7 @@ impl App<'_> {
             Step::Preview(sides) => {
                 self.previews = true;
                 if let Some(shown) = &mut self.shown {
-                    shown.preview.fix(sides);
+                    shown.preview.sides.fixed = sides;
                 }
                 None
             }
@@ -98,19 +98,13 @@ impl App<'_> {
                     Some(Step::Screenshot(path))
                 }
             },
-            Step::Text(path) => {
-                let text = self.text();
-                files::write_text(&path, &text).map(|()| None)?
-            }
+            Step::Text(path) => files::write_text(&path, &self.text()).map(|()| None)?,
             Step::Command(path) => {
                 let shown = self.shown.as_ref();
                 let line = shown.map_or_else(String::new, |shown| self.command_line(shown));
                 files::write_text(&path, &line).map(|()| None)?
             }
-            Step::Places(path) => {
-                let text = self.places();
-                files::write_text(&path, &text).map(|()| None)?
-            }
+            Step::Places(path) => files::write_text(&path, &self.places()).map(|()| None)?,
             Step::Shown(path, name) => {
                 let places = self.shown.as_ref().map_or(&[][..], |shown| &shown.places);
                 let is_there = places.iter().any(|(known, _)| *known == name);

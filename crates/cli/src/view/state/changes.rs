@@ -1,7 +1,6 @@
 //! What the panel changes.
 
 use super::lights::compass;
-use super::settings::Refused;
 use super::{State, Text, Wish, hundredths};
 
 /// A change that the panel asks for.
@@ -30,13 +29,8 @@ impl State {
             Change::Sun(to) => return self.point_sun(to),
             Change::Exposure(exposure) => self.set_exposure(exposure),
             Change::Setting(name, word) => {
-                return match self.settings.set(name, word, &mut self.asked) {
-                    Ok(quality) => {
-                        self.quality = quality;
-                        Wish::Light
-                    }
-                    Err(Refused(why)) => self.say(&why),
-                };
+                let changed = self.settings.set(name, word, &mut self.asked);
+                return self.take_quality(changed);
             }
             Change::Copy => return Wish::Copy,
         }
@@ -45,17 +39,6 @@ impl State {
 
     /// The first sun's compass azimuth and elevation, degrees.
     pub fn sun(&self) -> Option<[f64; 2]> {
-        self.scene.lights.suns.first().map(|sun| {
-            let (azimuth, elevation) = compass(sun);
-            [azimuth, elevation].map(hundredths)
-        })
-    }
-
-    pub fn exposure(&self) -> f32 {
-        self.exposure
-    }
-
-    pub fn text(&self) -> Text {
-        self.text
+        self.scene.lights.suns.first().map(|sun| compass(sun).map(hundredths))
     }
 }

@@ -57,7 +57,7 @@ pub struct Figures {
     pub answer_ms: Option<f64>,
     pub full_s: Option<f64>,
     /// Result of the comparison.
-    pub compared: Vec<String>,
+    pub compared: Option<String>,
 }
 
 impl Figures {
@@ -67,12 +67,26 @@ impl Figures {
 
     /// Nanoseconds by pass name, in order of first appearance.
     pub fn passes(&self) -> Vec<(&str, f64)> {
-        by_pass(self.times())
+        let mut all: Vec<(&str, f64)> = Vec::new();
+        for time in self.times() {
+            let name = time.label.split(' ').next().unwrap_or_default();
+            match all.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, ns)) => *ns += time.ns,
+                None => all.push((name, time.ns)),
+            }
+        }
+        all
     }
 
     /// Milliseconds of all passes.
     pub fn ms(&self) -> f64 {
         self.times().map(|t| t.ns).sum::<f64>() / 1e6
+    }
+
+    /// The time of all passes, and that from frame to frame.
+    fn time_text(&self) -> String {
+        let frame = self.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
+        format!("passes {:.2} ms{frame}", self.ms())
     }
 
     fn mib(&self) -> f64 {
@@ -88,9 +102,7 @@ impl State {
         }
         let mut lines = self.lines_of_light();
         lines.extend(self.tool_line());
-        let total = figures.ms();
-        let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
-        lines.push(format!("passes {total:.2} ms{frame}  memory {:.1} MiB", figures.mib()));
+        lines.push(format!("{}  memory {:.1} MiB", figures.time_text(), figures.mib()));
         for (name, ns) in figures.passes() {
             lines.push(format!("  {name:<18}{:>9.2} ms", ns / 1e6));
         }
@@ -114,8 +126,7 @@ impl State {
         let mut lines =
             vec![format!("{} x {}  memory {:.1} MiB", field.cols(), field.rows(), figures.mib())];
         lines.extend(self.tool_line());
-        let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
-        lines.push(format!("passes {:.2} ms{frame}", figures.ms()));
+        lines.push(figures.time_text());
         lines
     }
 
@@ -135,7 +146,7 @@ impl State {
             self.quality.bounces.count
         )];
         if let Some(sun) = self.scene.lights.suns.first() {
-            let (azimuth, elevation) = compass(sun);
+            let [azimuth, elevation] = compass(sun);
             lines.push(format!("sun {azimuth:.2}, {elevation:.2}  exposure {:.3}", self.exposure));
         }
         lines
@@ -156,7 +167,7 @@ impl State {
                 figures.full_s.map_or_else(String::new, |s| format!(", full light after {s:.2} s"));
             lines.push(format!("input to picture {ms:.0} ms{full}"));
         }
-        lines.extend(figures.compared.iter().cloned());
+        lines.extend(figures.compared.clone());
         lines
     }
 
@@ -204,19 +215,6 @@ impl State {
             chosen.map(|(setting, word, _)| (setting.name.to_owned(), word)).collect();
         idle::notes(&written, used, &|_| None)
     }
-}
-
-/// Times summed by pass name, in order of first appearance.
-fn by_pass<'a>(times: impl Iterator<Item = &'a Timing>) -> Vec<(&'a str, f64)> {
-    let mut all: Vec<(&str, f64)> = Vec::new();
-    for time in times {
-        let name = time.label.split(' ').next().unwrap_or_default();
-        match all.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, ns)) => *ns += time.ns,
-            None => all.push((name, time.ns)),
-        }
-    }
-    all
 }
 
 #[cfg(test)]

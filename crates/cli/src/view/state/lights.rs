@@ -5,8 +5,9 @@ use ridgelight::scene::{SphereLight, Sun};
 use super::viewpoint::height;
 use super::{State, Wish, hundredths};
 use crate::scene_file::Request;
-use crate::setup::lights::{LIGHTS, light};
+use crate::setup::lights::{LIGHTS, degrees, light};
 use crate::setup::sky;
+use crate::view::moving::side_m;
 
 /// Colours that a sphere light cycles through; its brightest channel stays.
 const COLOURS: [[f32; 3]; 6] = [
@@ -29,16 +30,11 @@ const GRIP: f64 = 8.0;
 impl State {
     /// Turns the first sun by degrees; adds one where there is none.
     pub(super) fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
-        match self.scene.lights.suns.first() {
-            Some(sun) => {
-                let (azimuth, elevation) = compass(sun);
-                self.point_sun([azimuth + clockwise, elevation + up])
-            }
-            None => {
-                light("sun").add(&mut self.scene.lights, "315,30").expect("a sun");
-                self.ask_for("sun")
-            }
-        }
+        let turned = |sun| {
+            let [azimuth, elevation] = compass(sun);
+            [azimuth + clockwise, elevation + up]
+        };
+        self.point_sun(self.scene.lights.suns.first().map_or([315.0, 30.0], turned))
     }
 
     /// Turns the first sun to a compass azimuth and an elevation, degrees; adds one where there is
@@ -102,7 +98,7 @@ impl State {
         let Some([x, y, ground]) = self.viewpoint.ground(&self.scene.field, size, at) else {
             return self.say("no ground there to place a light on");
         };
-        let radius_m = SHARE * self.side_m();
+        let radius_m = SHARE * side_m(&self.scene.field);
         let position_m = [x, y, ground + 3.0 * radius_m];
         let radiance = [RADIANCE; 3];
         self.scene.lights.sphere_lights.push(SphereLight { position_m, radius_m, radiance });
@@ -184,17 +180,9 @@ impl State {
         let [cell_x, cell_y] = field.cell_m();
         height(field, [x / cell_x, (field.rows() - 1) as f64 - y / cell_y])
     }
-
-    /// The field's shorter side.
-    pub(super) fn side_m(&self) -> f64 {
-        let field = &self.scene.field;
-        let [x, y] = field.cell_m();
-        (field.cols() as f64 * x).min(field.rows() as f64 * y)
-    }
 }
 
 /// Compass azimuth and elevation, degrees, without the rounding of radians.
-pub fn compass(sun: &Sun) -> (f64, f64) {
-    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
-    ((90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad))
+pub fn compass(sun: &Sun) -> [f64; 2] {
+    [(90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad)]
 }

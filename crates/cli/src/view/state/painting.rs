@@ -35,7 +35,9 @@ impl State {
     /// Dabs a quarter of the radius apart, up to a pixel.
     pub(super) fn draw_stroke(&mut self, action: Action, to: [f64; 2], size: [u32; 2]) -> Wish {
         let ground = self.viewpoint.ground(&self.scene.field, size, to);
-        let (Some([x, y, _]), true) = (ground, self.strokes.is_begun()) else { return Wish::Show };
+        let (Some([x, y, _]), true) = (ground, self.strokes.begun.is_some()) else {
+            return Wish::Show;
+        };
         let from = self.stroke_m;
         let length = (x - from[0]).hypot(y - from[1]);
         let spacing = self.brush.radius_m / 4.0;
@@ -60,7 +62,7 @@ impl State {
     }
 
     fn edit(&mut self, at: Rectangle) -> Wish {
-        self.edited = Some(self.edited.map_or(at, |all| together(all, at)));
+        self.edited = together(self.edited, Some(at));
         Wish::Heights
     }
 
@@ -103,21 +105,6 @@ impl State {
             _ => brush.strength = (brush.strength * 1.25).min(1.0),
         }
         Wish::Show
-    }
-
-    /// Where heights have changed since the last call.
-    pub fn take_edited(&mut self) -> Option<Rectangle> {
-        self.edited.take()
-    }
-
-    /// Whether heights have changed since then.
-    pub fn is_edited(&self) -> bool {
-        self.edited.is_some()
-    }
-
-    /// The taken rectangle could not be drawn.
-    pub fn give_back_edited(&mut self, at: Rectangle) {
-        self.edit(at);
     }
 
     /// Marks of the active tool in a picture of a size.

@@ -1,6 +1,5 @@
 //! Settings by keys and by the panel: the command line's settings, values and errors.
 
-use ridgelight::Result;
 use ridgelight::scene::{Quality, SETTINGS, Setting, Values, setting};
 
 use crate::scene_file::Request;
@@ -10,9 +9,6 @@ use crate::setup;
 pub struct Settings {
     chosen: usize,
 }
-
-/// A refused setting.
-pub struct Refused(pub String);
 
 impl Settings {
     pub fn new() -> Self {
@@ -41,13 +37,8 @@ impl Settings {
     ///
     /// # Errors
     /// The command line's error.
-    pub fn turn(
-        &self,
-        name: &str,
-        ahead: bool,
-        asked: &mut Request,
-    ) -> std::result::Result<Quality, Refused> {
-        let setting = setting(name).ok_or_else(|| Refused(format!("no setting {name}")))?;
+    pub fn turn(&self, name: &str, ahead: bool, asked: &mut Request) -> Result<Quality, String> {
+        let setting = setting(name).ok_or_else(|| format!("no setting {name}"))?;
         valued(name, next(setting, &word(setting, asked), ahead), asked)
     }
 
@@ -60,27 +51,23 @@ impl Settings {
         name: &str,
         value: String,
         asked: &mut Request,
-    ) -> std::result::Result<Quality, Refused> {
+    ) -> Result<Quality, String> {
         let at = SETTINGS.iter().position(|setting| setting.name == name);
-        self.chosen = at.ok_or_else(|| Refused(format!("no setting {name}")))?;
+        self.chosen = at.ok_or_else(|| format!("no setting {name}"))?;
         valued(name, value, asked)
     }
 }
 
-fn valued(name: &str, value: String, asked: &mut Request) -> std::result::Result<Quality, Refused> {
+fn valued(name: &str, value: String, asked: &mut Request) -> Result<Quality, String> {
     let mut wanted = asked.clone();
     wanted.set(name, vec![value]);
     let mut quality = Quality::default();
     for setting in SETTINGS {
-        said(setting.set(&mut quality, &word(setting, &wanted)))?;
+        let set = setting.set(&mut quality, &word(setting, &wanted));
+        set.map_err(|error| setup::in_flags(error).to_string())?;
     }
     *asked = wanted;
     Ok(quality)
-}
-
-/// The command line's spelling.
-pub fn said<T>(result: Result<T>) -> std::result::Result<T, Refused> {
-    result.map_err(|error| Refused(setup::in_flags(error).to_string()))
 }
 
 /// A setting's value: the user's, or the default.
@@ -129,7 +116,7 @@ mod tests {
                 let mut asked = Request::default();
                 match settings.turn(setting.name, ahead, &mut asked) {
                     Ok(_) => assert!(asked.first(setting.name).is_some()),
-                    Err(Refused(why)) => {
+                    Err(why) => {
                         assert!(why.contains(&flag(setting.name)), "{}: {why}", setting.name);
                     }
                 }
@@ -149,9 +136,7 @@ mod tests {
         for _ in 0..5 {
             assert!(settings.turn("azimuths", true, &mut asked).is_ok());
         }
-        let Err(Refused(why)) = settings.turn("azimuths", true, &mut asked) else {
-            panic!("2048 azimuths")
-        };
+        let Err(why) = settings.turn("azimuths", true, &mut asked) else { panic!("2048 azimuths") };
         assert_eq!(why, "--azimuths: found 2048, expected a whole number from 4 to 1024");
         assert_eq!(asked.first("azimuths"), Some("1024"));
     }

@@ -1,7 +1,8 @@
 use super::*;
 use crate::auto::picks::even_picks;
+use crate::auto::tests::lit_by;
 use ridgelight::basis::random::{STEP, mixed, unit};
-use ridgelight::scene::{HeightField, Lights, Surface};
+use ridgelight::scene::Lights;
 
 const SIDE: usize = 64;
 const SEEDS: u64 = 200;
@@ -173,11 +174,7 @@ fn infinite_weights_are_uniform() {
 /// value beyond f32 gives no weights if it is one of the first two, and has none if it is the fine one.
 #[test]
 fn a_fine_picture_directs_as_many_probes_as_a_coarse_one() {
-    let scene = Scene {
-        field: HeightField::new(1, 20, &[0.0; 20], [1.0; 2], None).unwrap(),
-        surface: Surface::default(),
-        lights: Lights::default(),
-    };
+    let scene = lit_by(Lights::default(), [1, 20], |_| 0.0);
     let with = |at: usize, more: f32| {
         let mut light = vec![1.0; 20];
         light[at] += more;

@@ -1,16 +1,11 @@
 use super::*;
-use ridgelight::scene::{HeightField, Lights, Surface};
+use crate::auto::tests::under_sky;
 
 /// The texels that confirm a choice are the requested ones; where more are wanted, also some of a new seed; or all texels, each
 /// once.
 #[test]
 fn requested_texels_confirm_the_choice() {
-    let heights: Vec<f64> = (0..80).map(|i| f64::from(i * i % 11)).collect();
-    let scene = Scene {
-        field: HeightField::new(8, 10, &heights, [1.0; 2], None).unwrap(),
-        surface: Surface::default(),
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    };
+    let scene = under_sky(8, 10);
     let unsure: Vec<f64> = (0..80).map(|i| f64::from(i % 7)).collect();
     OracleLight::with(&Lit::of(&scene), |oracle| {
         let of = |count: usize, seed: u64| Probes::by(oracle, count, seed, &unsure).unwrap();

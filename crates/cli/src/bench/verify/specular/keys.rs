@@ -12,9 +12,9 @@ use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_resolved};
 
-use super::super::aimed::{self, Horizons, Judged, allowed_by, horizons};
+use super::super::aimed::{self, Allowed, Horizons, Judged, allowed_by, horizons, judge_each};
 use super::super::sweeps::{AimedLayers, Shaded, azimuths_of, check_aimed, followed, lit};
-use super::super::{Device, Wanted, bounds, colours, percent, refused, rms, sentence, within};
+use super::super::{Device, Wanted, bounds, colours, percent, rms, sentence, within};
 use super::{GREY, VIEW_ERROR, normal_error};
 
 /// Specular and diffuse light of a [`half`](super::half) scene's key lights, which are its only lights and above the ground; `None`
@@ -89,15 +89,7 @@ fn slice(
 }
 
 /// Specular light of all key lights at one place, R, G, B.
-#[derive(Clone, Copy, Default)]
-struct Reflected {
-    /// Through the oracle's horizons.
-    light: DVec3,
-    /// Least and most, by the method's horizons.
-    range: [DVec3; 2],
-    /// Of rounding.
-    tolerance: DVec3,
-}
+type Reflected = Allowed<DVec3>;
 
 /// What the plan's slices of the key lights allow at each place. The error of a horizon is in the range, not in the tolerance.
 fn allowed(scene: &Scene, keys: &[Key], places: &[usize], quality: &Quality) -> Vec<Reflected> {
@@ -125,30 +117,8 @@ fn allowed(scene: &Scene, keys: &[Key], places: &[usize], quality: &Quality) -> 
     all
 }
 
-/// Judges each place by its own range.
 fn judge(found: &[DVec3], all: &[Reflected], quality: &Quality) -> Result<Judged> {
-    let mut judged = Judged { places: all.len(), ..Judged::default() };
-    for (found, Reflected { light, range: [least, most], tolerance }) in found.iter().zip(all) {
-        for c in 0..3 {
-            let [wrong, start, end] = [found[c], least[c] - tolerance[c], most[c] + tolerance[c]];
-            // NaN is in no range.
-            if !(start..=end).contains(&wrong) {
-                let what = format!(
-                    "specular of key lights at one place is {wrong:e}, expected {start:e} to {end:e}"
-                );
-                return Err(refused(&what, quality));
-            }
-        }
-        let error = (*found - *light).abs();
-        if error.cmpgt(*tolerance).any() {
-            judged.others += 1;
-        } else {
-            judged.error = judged.error.max(error.max_element());
-        }
-        judged.bound = judged.bound.max(tolerance.max_element());
-        judged.brightest = judged.brightest.max(most.max_element());
-    }
-    Ok(judged)
+    judge_each("specular of key lights at one place is", found, all, quality)
 }
 
 /// Share of equally bright places that may be lit instead of dark, or dark instead of lit: that of suns in [`bounds`].
@@ -285,8 +255,7 @@ fn on_white(scene: &Scene, layers: Vec<Pixels>) -> Vec<Pixels> {
 mod tests {
     use super::super::half;
     use super::*;
-    use crate::bench::verify::tests::{places, scene as fractal};
-    use ridgelight::plan::{self, Limits, Picture};
+    use crate::bench::verify::tests::{layered, places, scene as fractal};
     use ridgelight::scene::{Fuse, KeyLight, Lights, Surface};
 
     /// A fractal under a key light, and the same by the plan.
@@ -297,9 +266,7 @@ mod tests {
         let scene = fractal(48, Lights { keys: vec![key], ..Lights::default() });
         let phong = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.5 }));
         let scene = half(&Scene { surface: Surface { specular: phong, ..scene.surface }, ..scene });
-        let wanted = Picture { light_layers: true, ..Picture::default() };
-        let plan = plan::picture(&scene, quality, &Limits::lavapipe(), wanted).unwrap();
-        let keys = keys_of(&scene, &plan);
+        let keys = keys_of(&scene, &layered(&scene, quality));
         assert_eq!(keys.len(), 1);
         (scene, keys)
     }

@@ -118,8 +118,7 @@ fn wanted(scene: &Scene, slices: &[Slices], places: &[usize]) -> Light {
 mod tests {
     use super::super::half;
     use super::*;
-    use crate::bench::verify::tests::{places, scene as fractal};
-    use ridgelight::plan::{self, Limits, Picture};
+    use crate::bench::verify::tests::{layered, places, scene as fractal};
     use ridgelight::scene::{Lights, PhongSpecular, Quality, Specular, SphereLight, Surface};
     use std::f64::consts::TAU;
 
@@ -140,9 +139,7 @@ mod tests {
             let phong = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.5 }));
             let surface = Surface { specular: phong, ..scene.surface };
             let scene = half(&Scene { surface, ..scene });
-            let wanted_layers = Picture { light_layers: true, ..Picture::default() };
-            let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted_layers).unwrap();
-            let slices = counts_of(&scene, &plan);
+            let slices = counts_of(&scene, &layered(&scene, &quality));
             let [_, around] = slices[0].counts;
             let half_deviations = 2.0 * TAU * (f64::from(exponent) + 1.0).sqrt();
             assert!(f64::from(around) >= half_deviations, "{around} of {half_deviations}");

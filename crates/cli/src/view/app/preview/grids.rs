@@ -7,10 +7,11 @@ use ridgelight::plan::Limits;
 use ridgelight::scene::Scene;
 use ridgelight_viewer::Screen;
 
+use super::super::super::opening::joined;
 use super::super::super::state::State;
 use super::super::level::{GRIDS, Ground, Level, SKY, SLOPES, SUN, plan_level, plan_next};
 use super::super::sides::{DRAG, KEPT_AT_REST, KEPT_IN_DRAG, REST};
-use super::{Preview, Running, joined};
+use super::{Preview, Running};
 
 impl Preview {
     /// Starts a thread that makes the grids of the first preview, if there will be one.
@@ -70,7 +71,7 @@ impl Preview {
     fn take_grids(&mut self, screen: &mut Screen, state: &State) -> Result<Option<usize>> {
         let made = self.next_grids.take_if(|(_, thread)| thread.is_finished());
         let Some((stage, thread)) = made else { return Ok(None) };
-        let grounds = joined(thread)?;
+        let grounds = joined(thread.join())?;
         self.end_stage(stage, screen)?;
         let levels = self.levels[stage].insert(levels_of(grounds));
         levels.iter_mut().try_for_each(|level| level.take(state, (None, true)))?;
