@@ -22,7 +22,7 @@ layout(push_constant) uniform ShadePush {
     float exponent;      // of the Phong lobe
     float least_cosine;  // to the lobe's axis, below which light counts as 0
     uint relights;       // 1 after an edit: only the grid points marked in dirty_texels, from the list of their words
-    int first_level;     // specular of a map: see levels.glsl
+    int first_level;     // of a specular map: see levels.glsl
     int level_count;
     float levels_per_log;
 };

@@ -15,7 +15,7 @@ struct Specular {
     ivec4 last_peak;
 };
 
-// Of a map: of the swept level of exponents at or below each texel's own, and of the one above.
+// For a specular map: the swept levels below and above each texel's exponent.
 Specular speculars[2];
 
 struct Blocked {
@@ -33,7 +33,7 @@ void find_specular(ivec4 columns, ivec4 rows) {
         for (int i = 0; i < 2; i++) {
             vec4 texel = texelFetch(constants, first_level + LEVEL_TEXELS * level[i]);
             speculars[i].exponent[k] = texel.x;
-            // Every direction is dark where nothing is reflected.
+            // No cosine reaches 2: a texel of scale 0 skips every direction.
             speculars[i].least_cosine[k] = of.y > 0.0 ? texel.y : 2.0;
             speculars[i].first_peak[k] = int(texel.z);
             speculars[i].last_peak[k] = int(texel.w);

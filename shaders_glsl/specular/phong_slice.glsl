@@ -53,7 +53,7 @@ vec4 phong_integral(float n, vec4 along, vec4 up, vec4 cos_w, vec4 sin_w) {
     level_end = mix(vec4(-1.0), level_end, greaterThan(along, vec4(0.0)));
     end = mix(end, level_end, equal(up, vec4(0.0)));
     s = mix(s, end, lessThanEqual(c, vec4(0.0)));
-    // cos^2 itself, not 1 - sin^2: near the lobe's end their difference is all rounding.
+    // Takes cos^2 directly: near the lobe's end, 1 - sin^2 cancels to rounding error.
     c = max(c, 0.0);
     vec4 y2 = minus_log(min(s * s, vec4(1.0)), c * c);
     vec4 power = exp(-0.5 * (n + 1.0) * y2);

@@ -101,7 +101,7 @@ vec3 hidden_share(int level, vec3 hidden, float turn, float rise) {
     return mix(hidden / max(swept, hidden), vec3(0.0), lessThanEqual(hidden, vec3(0.0)));
 }
 
-// Unoccluded light at a place among the levels: Lagrange's polynomial through the four around it, or through all.
+// Unoccluded light at a fractional index of levels: Lagrange interpolation through the four nearest, or through all if there are fewer.
 vec3 between_levels(float place, float turn, float rise) {
     int count = min(level_count, 4);
     int first = clamp(int(place) - 1, 0, level_count - count);

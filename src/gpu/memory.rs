@@ -243,8 +243,8 @@ impl Memory {
         self.allocator = None;
     }
 
-    /// Unless it has ended, says whose it is and keeps all of it until the device is destroyed: for images and buffers that
-    /// may still be in use.
+    /// If [`end`](Self::end) was not called, prints the owner and keeps all memory until the device is destroyed, because images and
+    /// buffers may still be in use.
     pub(crate) fn leak(&mut self, owner: &str) {
         if let Some(allocator) = self.allocator.take() {
             eprintln!("ridgelight: {owner} was dropped without destroy(): its Vulkan objects stay");

@@ -282,8 +282,8 @@ impl<'a> ActiveLights<'a> {
         key.slices(setting).max(self.half_deviations(key.width_rad).min(MOST_SPECULAR_AZIMUTHS))
     }
 
-    /// Slices around a texel within a sphere light, as wide as a key light's for specular. The largest exponent, 10,000, needs 1,257: fewer than the
-    /// 2,048 of the largest `sun_azimuths`.
+    /// Slices around a texel within a sphere light, each at most half as wide as the narrowest lobe, as for key lights. The largest
+    /// exponent, 10,000, needs 1,257: fewer than the 2,048 of the largest `sun_azimuths`.
     pub(super) fn specular_slices_around(&self) -> u32 {
         self.half_deviations(TAU)
     }

@@ -68,9 +68,9 @@ pub struct Picture {
 /// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "indirect.specular" (specular of all bounces,
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
-/// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; a map of specular has tables of several
-/// exponents. With `basis sh` it uses harmonics, whose order limits the lobe, and so does a map whose tables exceed the memory budget.
-/// Suns use the mean of the lobe over their disc and their visible part; key
+/// Specular light of sky and environment comes from tables of the lobe's integral over each azimuth's slice. A specular map has tables
+/// for several exponents. `basis sh` uses SH instead, whose order limits the lobe's sharpness. With `basis auto`, a specular map whose
+/// tables exceed the memory budget or a limit of the device also uses SH. Suns use the mean of the lobe over their disc and their visible part; key
 /// lights and sphere lights use the lobe over their slice in each azimuth.
 ///
 /// # Errors
@@ -85,19 +85,27 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         }
     };
     match planned(quality) {
-        Err(Error::Limit { .. })
-            if quality.basis == Basis::Auto
-                && matches!(scene.surface.specular, Some(Specular::Map(_))) =>
+        Err(error @ Error::Limit { .. })
+            if quality.basis == Basis::Auto && reflects_around_by_map(scene) =>
         {
-            let mut plan = planned(&Quality { basis: Basis::Sh, ..*quality })?;
+            let by_sh = planned(&Quality { basis: Basis::Sh, ..*quality });
+            let Ok(mut plan) = by_sh else { return Err(error) };
             plan.notes.push(
-                "basis sh: tables of a map of specular exceed the limits; harmonics blur the lobe"
+                "basis sh: the tables of the specular map exceed the memory budget or a limit of the device; SH blurs the lobe"
                     .into(),
             );
             Ok(plan)
         }
         plan => plan,
     }
+}
+
+/// Whether a specular map reflects a sky or an environment.
+fn reflects_around_by_map(scene: &Scene) -> bool {
+    let lights = scene.lights.lit();
+    let has_light = lights.sky.is_some() || lights.environment.is_some();
+    let map = scene.surface.specular.as_ref().filter(|s| matches!(s, Specular::Map(_)));
+    has_light && map.is_some_and(|map| map.largest().scale > 0.0)
 }
 
 /// Plans a picture, with or without a visibility cache for bounces.

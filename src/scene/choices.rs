@@ -124,7 +124,7 @@ words! {
 words! {
     /// Basis of an environment. A uniform sky is always in closed form.
     pub enum Basis = Auto {
-        /// The planner's choice: sh for a map of specular, else table
+        /// The planner's choice: table; sh for a specular map whose tables do not fit
         Auto = "auto",
         /// Tables of the light above each elevation, for each azimuth
         ///

@@ -66,9 +66,9 @@ impl Specular {
     /// A map of `grid_points` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
     /// With [`Albedo::unknown`], which the plan takes as fully reflecting, use `f32::EPSILON`.
     ///
-    /// The plan also assumes the largest exponent everywhere, for which key lights and sphere lights take the most azimuths, and sky
-    /// and environment the most tables. If yours are smaller, a [`Map`](Self::Map) that holds their largest one at every texel takes
-    /// fewer. Larger ones count as the largest that was planned.
+    /// The plan also assumes the largest exponent everywhere. Key lights and sphere lights then need the most azimuths, and sky and
+    /// environment need the most tables. To need fewer, pass a [`Map`](Self::Map) with your largest exponent at every texel. Sky and
+    /// environment clamp exponents above the planned maximum to it; suns, key lights and sphere lights do not.
     pub fn unknown(grid_points: usize, scale: f32) -> Self {
         Specular::Map(vec![PhongSpecular { exponent: LARGEST_EXPONENT, scale }; grid_points])
     }
@@ -81,12 +81,13 @@ impl Specular {
         }
     }
 
-    /// The largest exponent and the largest scale of all texels.
+    /// The largest exponent and the largest scale of all texels that reflect.
     pub fn largest(&self) -> PhongSpecular {
         match self {
             Specular::Constant(specular) => *specular,
             Specular::Map(map) => {
-                map.iter().fold(PhongSpecular { exponent: 0.0, scale: 0.0 }, |a, b| PhongSpecular {
+                let nothing = PhongSpecular { exponent: 0.0, scale: 0.0 };
+                map.iter().filter(|texel| texel.scale > 0.0).fold(nothing, |a, b| PhongSpecular {
                     exponent: a.exponent.max(b.exponent),
                     scale: a.scale.max(b.scale),
                 })

@@ -155,7 +155,7 @@ fn new_heights_need_no_tables() {
     }
 }
 
-/// A map of specular has tables of several exponents under a sky and under an environment. Where they exceed the memory budget, the
+/// A specular map has tables of several exponents under a sky and under an environment. Where they exceed the memory budget, the
 /// planner's choice is harmonics, with a note, and `basis table` is refused.
 #[test]
 fn a_map_has_tables_where_they_fit() {
@@ -182,6 +182,6 @@ fn a_map_has_tables_where_they_fit() {
     assert!(has(&plan, "specular_light") && !has(&plan, "light_matrix"));
     let plan = of(&scene, Basis::Auto, small).expect("a plan");
     assert!(!has(&plan, "specular_light") && has(&plan, "light_matrix"));
-    assert!(plan.notes.iter().any(|n| n.starts_with("basis sh: tables of a map of specular")));
+    assert!(plan.notes.iter().any(|n| n.starts_with("basis sh: the tables of the specular map")));
     of(&scene, Basis::Table, small).expect_err("beyond the budget");
 }

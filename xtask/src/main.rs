@@ -72,7 +72,7 @@ fn performance(root: &Path) -> Result<String, String> {
     Ok("wrote docs/measured/performance.md\n".to_owned())
 }
 
-/// What runs the program that measures.
+/// Arguments of cargo that run `ridgelight-measure`.
 const MEASURE: [&str; 6] = ["run", "--release", "--quiet", "--package", "ridgelight-measure", "--"];
 
 /// Builds the program and the one that calls it, and runs them.

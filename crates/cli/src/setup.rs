@@ -350,7 +350,8 @@ pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
     if !approximates_specular(scene, bounces) {
         return Ok(());
     }
-    let expected = "no --bounces; SH of --sh-order only approximate specular light between them";
+    let expected =
+        "no --bounces: specular light between bounces is only approximated, in SH of --sh-order";
     Err(Error::setting(format!("--specular with {what}"), "specular with bounces", expected))
 }
 

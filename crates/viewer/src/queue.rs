@@ -56,7 +56,7 @@ impl Screen {
         self.slots[slot].give_up(&self.gpu);
     }
 
-    /// Ends the window's pictures, with which the device is done.
+    /// Destroys the swapchain. The device must no longer use it.
     pub(super) fn end_chain(&mut self) {
         if let Some(chain) = self.chain.take() {
             chain.end(&self.gpu, &self.swapchains);

@@ -67,8 +67,8 @@ pub(crate) fn plan(
         push.eye_m = eye_m;
         push.exponent = tables.exponent;
         push.least_cosine = least_cosine(&tables);
-        if let Some(of_map) = levels.of_map {
-            bound.extend(of_map.bound());
+        if let Some(map_images) = levels.map_images {
+            bound.extend(map_images.bound());
             bound.push(("constants", levels.constants));
             push.first_level = levels.first_texel as i32;
             push.level_count = levels.count as i32;
@@ -79,11 +79,11 @@ pub(crate) fn plan(
         push.relights = 1;
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
-    let of_map = images.specular.and_then(|specular| specular.levels.of_map);
+    let map_images = images.specular.and_then(|specular| specular.levels.map_images);
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 }
         + if images.specular.is_some() { 32 } else { 0 }
-        + if of_map.is_some() { 48 } else { 0 };
+        + if map_images.is_some() { 48 } else { 0 };
     let pass = builder.pass(
         shaders::SkyShade {
             layer_shift: batch.layer_shift as i32,
@@ -96,7 +96,7 @@ pub(crate) fn plan(
             marches_rows: axis.marches_rows,
             has_specular: images.specular.is_some(),
             reads_lane_buffer: images.lane_buffer.is_some(),
-            specular_is_map: of_map.is_some(),
+            specular_is_map: map_images.is_some(),
             specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },
         part,

@@ -29,14 +29,14 @@ pub(crate) fn plan(
         ("specular_sum", specular_sum),
         ("constants", levels.constants),
     ];
-    bound.extend(levels.of_map.iter().flat_map(|of| of.bound()));
+    bound.extend(levels.map_images.iter().flat_map(|of| of.bound()));
     // Texels of maps: of one exponent, or of four unoccluded ones and two that were swept.
-    let fetched = if levels.of_map.is_some() { 6 * 16 } else { 2 * 16 };
+    let fetched = if levels.map_images.is_some() { 6 * 16 } else { 2 * 16 };
     builder.pass(
         shaders::SpecularLight {
             border: border as u32,
             marches_rows: axis.marches_rows,
-            specular_is_map: levels.of_map.is_some(),
+            specular_is_map: levels.map_images.is_some(),
         },
         "",
         "the unoccluded reflection, times the share that horizons leave free",

@@ -12,25 +12,25 @@ pub(crate) const SWEPT_EVERY: usize = 2;
 /// Texels of a level in the constants: see levels.glsl.
 pub(crate) const LEVEL_TEXELS: usize = 3;
 
-/// Exponents of which the tables of a surface are: its only one, or for a map levels from 0 to its largest, evenly spaced in
-/// ln(n + 1), ln 2 / 2 or less apart. The smallest is 0 because a device's own map may have smaller exponents than the planned one.
+/// Exponents that a surface needs tables for: its single one, or the exponent levels of a specular map, evenly spaced in ln(n + 1) and at
+/// most ln 2 / 2 apart. The lowest is 0, because a map on the device may hold smaller exponents than the planned one.
 pub(crate) fn levels(specular: &Specular) -> Vec<f32> {
     let most = specular.largest().exponent;
     match specular {
         Specular::Constant(_) => vec![most],
         Specular::Map(_) => {
             let octaves = f64::from(most + 1.0).log2();
-            let count = SWEPT_EVERY * octaves.ceil().max(1.0) as usize;
-            let at = |i: usize| (octaves * i as f64 / count as f64).exp2() - 1.0;
+            let count = SWEPT_EVERY * octaves.ceil() as usize;
+            let at = |i: usize| (octaves * i as f64 / count.max(1) as f64).exp2() - 1.0;
             (0..=count).map(|i| at(i) as f32).collect()
         }
     }
 }
 
-/// Levels in a unit of ln(n + 1).
+/// Levels per unit of ln(n + 1).
 pub(crate) fn levels_per_log(levels: &[f32]) -> f32 {
     match levels {
-        [.., most] if *most > 0.0 => (levels.len() - 1) as f32 / (most + 1.0).ln(),
+        [_, .., most] => (levels.len() - 1) as f32 / (most + 1.0).ln(),
         _ => 0.0,
     }
 }
@@ -41,21 +41,21 @@ pub(crate) struct MapLevels {
     pub constants: ResourceId,
     pub first_texel: usize,
     pub count: u32,
-    /// Levels in a unit of ln(n + 1).
+    /// Levels per unit of ln(n + 1).
     pub per_log: f32,
     /// None where all texels have one exponent.
-    pub of_map: Option<OfMap>,
+    pub map_images: Option<MapImages>,
 }
 
-/// What specular of a map needs besides.
+/// Additional images for a specular map.
 #[derive(Clone, Copy)]
-pub(crate) struct OfMap {
+pub(crate) struct MapImages {
     pub phong_map: ResourceId,
     /// `blocked_sum` of the level above each texel's exponent.
     pub blocked_above: ResourceId,
 }
 
-impl OfMap {
+impl MapImages {
     pub(crate) fn bound(&self) -> [(&'static str, ResourceId); 2] {
         [("phong_map", self.phong_map), ("blocked_above", self.blocked_above)]
     }
@@ -80,9 +80,9 @@ pub(crate) struct SpecularTables {
 }
 
 impl SpecularTables {
-    /// For each exponent, and azimuths whose neighbours are up to twice `gap_rad` apart. `nodes`: see the field. Tables lie side by
-    /// side in one image; those of whole slices take the same place one after the other, as [`MirrorMap`](super::mirror_map::MirrorMap)
-    /// reads each before the next is made.
+    /// Makes a table for each exponent. Neighbouring azimuths are at most 2 `gap_rad` apart. `nodes`: see the field. The tables lie side
+    /// by side in one image. Tables of whole slices reuse the same columns, because [`MirrorMap`](super::mirror_map::MirrorMap) reads
+    /// each before the next is filled.
     ///
     /// Peaks lie a quarter of the lobe's deviation apart, 1/√n radians; at least 192 of them resolve the edges of an
     /// environment's brightest spots, whatever the lobe is. There are at most 1024: from n = 2,950 on they lie farther apart.
@@ -215,7 +215,7 @@ mod tests {
             let all = levels(&Specular::Map(vec![of(most), of(0.0)]));
             assert_eq!((all[0], all[all.len() - 1]), (0.0, most), "{all:?}");
             assert_eq!((all.len() - 1) % SWEPT_EVERY, 0);
-            let step = (most + 1.0).ln() / (all.len() - 1) as f32;
+            let step = (most + 1.0).ln() / (all.len() - 1).max(1) as f32;
             assert!(step <= 0.5 * std::f32::consts::LN_2 + 1e-6, "{most}: {step}");
             for (i, n) in all.iter().enumerate() {
                 assert!(((n + 1.0).ln() - step * i as f32).abs() < 1e-5, "{all:?}");

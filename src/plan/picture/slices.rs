@@ -6,22 +6,21 @@ use crate::passes::mirror_map::{self, MirrorMap};
 use crate::passes::sky_shade;
 use crate::passes::specular_light::Hidden;
 use crate::passes::specular_tables::{
-    self, LEVEL_TEXELS, MapLevels, OfMap, SWEPT_EVERY, SpecularTables,
+    self, LEVEL_TEXELS, MapImages, MapLevels, SWEPT_EVERY, SpecularTables,
 };
 use crate::scene::{Border, Environment, Quality, Specular};
 
 /// Tables of a Phong lobe of one exponent.
 pub(super) struct SpecularLevel {
-    /// Of the swept azimuths, up to each elevation, and their map by mirror direction; at every
-    /// [`SWEPT_EVERY`](specular_tables::SWEPT_EVERY)th level.
+    /// Table and mirror map of the swept azimuths, only at every [`SWEPT_EVERY`]th level.
     pub swept: Option<(SpecularTables, MirrorMap)>,
-    /// Of fine azimuths, the whole slices, and their map.
+    /// Table of whole slices, of the fine azimuths, and its mirror map.
     pub fine: (SpecularTables, MirrorMap),
 }
 
 /// Specular of sky and environment by tables of a Phong lobe.
 pub(super) struct SpecularSlices {
-    /// One, or several for a map of specular.
+    /// One, or several for a specular map.
     pub levels: Vec<SpecularLevel>,
     /// The fine azimuths, in the buffer "constants", and their rows of the environment.
     pub fine_azimuths: ResourceId,
@@ -33,8 +32,8 @@ pub(super) struct SpecularSlices {
 }
 
 impl SpecularLevel {
-    /// Three texels: see levels.glsl. The first is for maps; else exponents are push constants alone, so that another one changes
-    /// none of the constants.
+    /// Three texels: see levels.glsl. The first is used only by specular maps. A constant exponent is only a push constant, so a new
+    /// exponent leaves `constants` unchanged.
     fn texels(&self, is_map: bool) -> [f32; 4 * LEVEL_TEXELS] {
         let tables = self.swept.filter(|_| is_map).map_or([0.0; 4], |(tables, _)| {
             let [first, last] = [tables.first_peak, tables.peaks - 1].map(|n| n as f32);
@@ -86,7 +85,7 @@ impl SpecularSlices {
         let mut tables_and_maps =
             |names: [&str; 2], levels: &[f32], nodes: u32, count: u32, repeats: u32| {
                 let layers = if is_even { 1 } else { count };
-                // Where light decides the azimuths, they may lie four times as far apart as even ones.
+                // Azimuths placed by the light can be four times as far apart as evenly spaced ones.
                 let farthest = if layers > 1 { 4.0 } else { 1.0 };
                 let gap_rad = farthest * std::f32::consts::PI / count as f32;
                 let of = (levels, gap_rad);
@@ -110,14 +109,14 @@ impl SpecularSlices {
             builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
         };
         let blocked_sum = image("blocked_sum");
-        let of_map =
-            phong_map.map(|phong_map| OfMap { phong_map, blocked_above: image("blocked_above") });
+        let map_images = phong_map
+            .map(|phong_map| MapImages { phong_map, blocked_above: image("blocked_above") });
         let texels: Vec<f32> =
-            levels.iter().flat_map(|level| level.texels(of_map.is_some())).collect();
+            levels.iter().flat_map(|level| level.texels(map_images.is_some())).collect();
         let (constants, first_texel) = builder.constants(&texels);
         let count = exponents.len() as u32;
         let per_log = specular_tables::levels_per_log(&exponents);
-        let levels_of = MapLevels { constants, first_texel, count, per_log, of_map };
+        let levels_of = MapLevels { constants, first_texel, count, per_log, map_images };
         Self {
             levels,
             fine_azimuths,

@@ -146,7 +146,7 @@ impl Drawing<'_> {
             // Of a map, each level has its own passes.
             let part = |name: &str| match slices.levels.len() {
                 1 => name.to_owned(),
-                _ => format!("{name} exponent {:.1}", fine.exponent).trim_start().to_owned(),
+                _ => format!("{name} exponent {:.3}", fine.exponent).trim_start().to_owned(),
             };
             fine.plan(builder, &part("fine"), sky, fine_rows, (slices.fine_azimuths, false));
             unoccluded.plan(

@@ -295,3 +295,36 @@ fn another_eye_needs_no_tables() {
         gpu.end(frame);
     }
 }
+
+/// The tables of a specular map's levels, which share one image of whole slices, follow the environment. A map with other exponents
+/// needs none of them: it has the bits of a plan that was made for it, as both have the same largest exponent.
+#[test]
+fn tables_of_a_map_follow_the_environment_alone() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let of = |exponent| PhongSpecular { exponent, scale: 0.5 };
+    let mut scene = scene(5.0);
+    scene.surface.specular = Some(Specular::Map(vec![of(30.0); SIDE * SIDE]));
+    let plan = planned(gpu, &scene);
+    let mut contents = contents(&scene, 1);
+    let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let kept = relit(gpu, &mut frame, &plan, (&scene, &mut contents));
+    let is_table = |label: &&String| label.contains("_tables") || label.contains("mirror_map");
+    assert_eq!(kept.iter().filter(is_table).count(), 0, "{kept:?}");
+
+    let phong = plan.find("phong").expect("an input");
+    let input = plan.inputs().position(|(id, _)| id == phong).expect("an input");
+    let texels = (0..SIDE * SIDE).map(|i| of((i % 31) as f32));
+    scene.surface.specular = Some(Specular::Map(texels.collect()));
+    let own = planned(gpu, &scene);
+    contents[input] = plan::picture_inputs(&scene).swap_remove(input);
+    gpu.refill(&frame, input, &contents[input]).expect("refilled");
+    let passes = frame.renderer().passes_after(&[phong]);
+    let kept = left_out(&plan, &passes);
+    let tables = plan.passes.iter().map(|pass| pass.label()).filter(|label| is_table(&label));
+    assert!(tables.clone().count() > 30 && tables.clone().all(|label| kept.contains(&label)));
+    gpu.draw_passes(&mut frame, &passes).expect("drawn");
+    assert!(bits(gpu, &frame) == from_nothing(gpu, &own, &contents));
+    gpu.end(frame);
+}

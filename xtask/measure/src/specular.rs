@@ -1,5 +1,6 @@
-//! Errors of Phong specular against the path tracer: direct light by exponent, by slices of the lobe
-//! and by SH of receiver and order, then of a map of exponents and of suns; and indirect light by direction and as from straight above (NS09, figure 5).
+//! Errors of Phong specular against the path tracer. Direct light by exponent, with slices of the lobe and
+//! with SH by receiver and order; then of a specular map and of suns. Indirect light by direction, and as
+//! viewed from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
@@ -107,9 +108,9 @@ fn map_of(exponents: &[f32], grid_points: usize, scale: f32) -> Specular {
     Specular::Map(all.map(|&exponent| PhongSpecular { exponent, scale }).collect())
 }
 
-/// Each exponent of a map: errors over its grid points, over their mean.
+/// For each exponent of the map: the error over the grid points with that exponent, relative to their mean.
 fn map(gpu: &mut Headless, ground: &(HeightField, Environment)) -> Outcome {
-    println!("\nA map of all of these:\n");
+    println!("\nA specular map of all of these exponents:\n");
     head("| exponent | azimuths | basis | RMSE % | paths' noise % |");
     let mut scene = scene(ground, 0.0, (0.0, 1.0));
     let map = map_of(&DIRECT_EXPONENTS, ground.0.heights_m().len(), 1.0);

@@ -28,7 +28,7 @@ impl QualityArgs {
     /// # Errors
     /// The first value that its setting does not take.
     pub fn quality(&self) -> Result<Quality> {
-        debug_assert!(!self.values.is_empty(), "the command remembers its settings");
+        debug_assert!(!self.values.is_empty(), "`remember` was not called");
         let mut quality = Quality::default();
         for (setting, value) in &self.values {
             setting.set(&mut quality, value)?;
@@ -41,7 +41,8 @@ impl QualityArgs {
         self.given.iter().any(|given| given == setting)
     }
 
-    /// Takes all values, and which settings the user wrote: values alone do not differ from defaults or from a scene file's.
+    /// Stores all values and which settings the user wrote. A value alone does not show whether it comes from the user, a default or a
+    /// scene file.
     pub fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
         let value = |setting: &'static Setting| {
             Some((setting, matches.get_one::<String>(setting.name)?.clone()))

@@ -204,7 +204,7 @@ pub struct OfLight {
     pub make: fn(&mut Making, &mut MapFiles) -> Result<()>,
 }
 
-/// What light is made with.
+/// What [`Kind::make`] works with: device, job and progress stages.
 pub struct Making<'a> {
     pub gpu: &'a mut Headless,
     pub job: &'a Job<'a>,

@@ -111,7 +111,7 @@ pub fn peak(field: &HeightField, tint: Tint, share: f64) -> f64 {
     at_share(&mut all, share).map_or(1.0, |bright| bright / luminance(lightest))
 }
 
-/// The value that a share of all does not exceed; none of no values.
+/// The quantile `share` of the values; `None` if there are none.
 pub fn at_share(all: &mut [f64], share: f64) -> Option<f64> {
     let at = (share * all.len().checked_sub(1)? as f64).round() as usize;
     Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)

@@ -110,7 +110,7 @@ fn erode(heights: &mut [f64], weights: &[f64], cols: usize, [x, y]: [f64; 2], ra
     heights.iter_mut().zip(&change).for_each(|(h, c)| *h += c);
 }
 
-/// The least rectangle with both; the other where one is none.
+/// The smallest rectangle that contains both; if one is `None`, the other.
 pub fn together(a: Option<Rectangle>, b: Option<Rectangle>) -> Option<Rectangle> {
     let (Some(a), Some(b)) = (a, b) else { return a.or(b) };
     let (col, row) = (a.col.min(b.col), a.row.min(b.row));

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use crate::Folder;
+use crate::formats::hdr;
+use crate::{Folder, specular_map};
 
 /// Before the verification.
 #[test]
@@ -149,6 +150,23 @@ fn gpu_rows_of_sizes_are_printed_before_a_later_error() {
     assert!(run.err.contains("--memory-budget"), "{}", run.err);
     let rows: Vec<&str> = run.out.lines().filter(|line| line.ends_with(" 1")).collect();
     assert!(rows.len() == 1 && rows[0].trim_start().starts_with("16 "), "{}", run.out);
+}
+
+/// A specular map under a sky and an environment is compared with the oracle, each texel by its own exponent.
+#[test]
+fn gpu_a_specular_map_is_verified() {
+    let folder = Folder::new();
+    folder.write("specular.npy", &specular_map(32));
+    let texels: Vec<[u8; 4]> = (0..32 * 16).map(|i| [128, (i % 90) as u8, 40, 129]).collect();
+    folder.write("env.hdr", &hdr(32, 16, "", &texels));
+    for light in ["--sky 1", "--env env.hdr"] {
+        let run = folder.run_str(&format!(
+            "bench --size 32 --azimuths 32 --runs 1 --albedo 0.2 --specular specular.npy {light}"
+        ));
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let verified = run.out.lines().find(|line| line.starts_with("verified: ")).expect("a line");
+        assert!(verified.contains("specular error"), "{verified}");
+    }
 }
 
 /// Every light of a scene with specular is compared, and so is the diffuse light in the slices that specular needs.

@@ -235,3 +235,12 @@ fn a_missing_driver_is_reported() {
 fn read(path: &Path) -> ridgelight_io::Planes {
     ridgelight_io::read_planes(path).unwrap()
 }
+
+/// A specular map of `side`² texels: exponents 0 to 8, scales 0 to 0.4.
+fn specular_map(side: u16) -> Vec<u8> {
+    let count = side * side;
+    let exponents = (0..count).map(|i| f32::from(i % 9));
+    let scales = (0..count).map(|i| f32::from(i % 3) * 0.2);
+    let bytes: Vec<u8> = exponents.chain(scales).flat_map(f32::to_le_bytes).collect();
+    formats::npy("<f4", false, &format!("(2, {side}, {side})"), &bytes)
+}

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::formats::npy;
-use crate::{Folder, refused, succeeded};
+use crate::{Folder, refused, specular_map, succeeded};
 
 #[test]
 fn wrong_trades_are_refused() {
@@ -352,18 +352,15 @@ fn gpu_trade_against_a_reference() {
 fn gpu_trade_takes_specular() {
     let folder = Folder::new();
     write_peaks(&folder);
-    let specular: Vec<u8> = (0..512_u16)
-        .flat_map(|i| if i < 256 { f32::from(i % 9) } else { f32::from(i % 3) * 0.2 }.to_le_bytes())
-        .collect();
-    folder.write("specular.npy", &npy("<f4", false, "(2, 16, 16)", &specular));
+    folder.write("specular.npy", &specular_map(16));
     let scene = "--sky 1 --sun 100,40 --albedo 0.5 --specular specular.npy --bounces 2";
     let trace = format!("reference field.npy -o ground_truth.exr --spp 512 --quiet {scene}");
     succeeded(&folder, &trace);
     let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
     let run = folder.run_str(&bare);
     assert_eq!(run.status, Some(2), "{}", run.err);
-    let said = "--specular with trade without --reference: found specular with bounces";
-    assert!(run.err.contains(said), "{}", run.err);
+    let expected = "--specular with trade without --reference: found specular with bounces";
+    assert!(run.err.contains(expected), "{}", run.err);
     succeeded(&folder, &format!("{bare} --reference ground_truth.exr"));
     let report = json(&folder.path("out/trade.json"));
     let flags = |list: &str| -> Vec<String> {
@@ -382,6 +379,19 @@ fn gpu_trade_takes_specular() {
     let count = exact.expect("a reason")["count"].as_u64().unwrap();
     // Azimuths, sun slices, bounces, basis, SH order and specular storage: each step is tried with all or none.
     assert!(count > 0 && count % (6 * 6 * 5 * 2 * 3 * 4) == 0, "{count}");
+}
+
+/// A specular map without bounces needs no reference, and `render` chooses settings for it.
+#[test]
+fn gpu_a_specular_map_takes_choices() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    folder.write("specular.npy", &specular_map(16));
+    let scene = "--sky 1 --albedo 0.5 --specular specular.npy --quiet";
+    succeeded(&folder, &format!("trade field.npy -o out --evaluations 2 {scene}"));
+    let report = json(&folder.path("out/trade.json"));
+    assert!(!report["points"].as_array().unwrap().is_empty());
+    succeeded(&folder, &format!("render field.npy -o light.exr --max-error 0.1 {scene}"));
 }
 
 /// Specular without bounces needs no reference: the ground truth that is drawn has lobes, as probes confirm.

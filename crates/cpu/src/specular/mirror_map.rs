@@ -43,7 +43,7 @@ impl Tables<'_> {
         let (cos, sin) = (f64::from(azimuth.cos_phi), f64::from(azimuth.sin_phi));
         let along = mirror.x * cos + mirror.y * sin;
         let across = mirror.x * sin - mirror.y * cos;
-        // The azimuth's sine and cosine are rounded: each of the two forms of a² is exact where the shader uses it.
+        // The azimuth's sine and cosine are rounded, so the two forms of a² differ. This uses the same one as the shader.
         let p2 = across * across;
         let short2 =
             if p2 > 0.5 { along * along + mirror.z * mirror.z } else { 1.0 - p2 }.max(1e-30);

@@ -64,16 +64,20 @@ impl Map<'_> {
     }
 }
 
-/// Unoccluded light at a `place` among `count` levels of exponents: Lagrange's polynomial through the four around it, or through
-/// all.
+/// Unoccluded light at a fractional index, `place`, of `count` exponent levels: Lagrange interpolation through the four nearest, or
+/// through all if there are fewer.
 ///
-/// A place errs by a logarithm and a product, 6 ε of it. Weights of four even nodes are at most 1 by magnitude, change by no more
-/// than 11 / 6 a level, and err by 12 ε.
-pub fn between_levels(place: f64, count: usize, level: impl Fn(usize) -> Tabulated) -> Tabulated {
+/// The index errs by `off_place`. Lagrange weights at four equally spaced nodes are at most 1.06 in magnitude, change by at most 3 per
+/// level, and have an error of 12 ε.
+pub fn between_levels(
+    (place, off_place): (f64, f64),
+    count: usize,
+    level: impl Fn(usize) -> Tabulated,
+) -> Tabulated {
     let used = count.min(4);
     let first = (place as usize).saturating_sub(1).min(count - used);
     let mut sum = Tabulated::default();
-    let off = if used > 1 { 11.0 / 6.0 * 6.0 * EPSILON * place + 12.0 * EPSILON } else { 0.0 };
+    let off = if used > 1 { 3.0 * off_place + 12.0 * EPSILON } else { 0.0 };
     for i in 0..used {
         let others = (0..used).filter(|j| *j != i);
         let of = |j: usize| (place - (first + j) as f64) / (i as f64 - j as f64);
@@ -91,15 +95,20 @@ pub fn hidden_share(swept: &Tabulated, blocked: DVec3) -> Tabulated {
     for c in 0..3 {
         let (b, t) = (blocked[c], swept.light[c]);
         all.light[c] = if b <= 0.0 { 0.0 } else { b / t.max(b) };
-        // A share errs with what it is of.
+        // The relative error of the share includes that of `swept`, its divisor.
         let off = swept.tolerance[c] / t.max(b).max(1e-30) + 8.0 * EPSILON;
         all.tolerance[c] = (all.light[c] * off).min(1.0);
     }
     all
 }
 
-/// Exit radiance for scale 1, from what horizons hide at one level, or at two, `t` levels above the first.
-pub fn specular_light(whole: &Tabulated, hidden: &[Tabulated], t: f64) -> Tabulated {
+/// Exit radiance for scale 1, from what horizons hide at one level, or at two, a share of `t` from the first to the second, which errs
+/// by `off_t`.
+pub fn specular_light(
+    whole: &Tabulated,
+    hidden: &[Tabulated],
+    (t, off_t): (f64, f64),
+) -> Tabulated {
     let unoccluded = whole.light.max(DVec3::ZERO);
     let of = |of: fn(&Tabulated) -> DVec3| match hidden {
         [one] => of(one),
@@ -107,9 +116,12 @@ pub fn specular_light(whole: &Tabulated, hidden: &[Tabulated], t: f64) -> Tabula
         [] => DVec3::ZERO,
     };
     let (share, off) = (of(|one| one.light), of(|one| one.tolerance));
-    let rounded = DVec3::splat(if hidden.len() > 1 { 100.0 } else { 4.0 } * EPSILON);
+    let between = match hidden {
+        [one, above, ..] => (one.light - above.light).abs() * (off_t + 4.0 * EPSILON),
+        _ => DVec3::ZERO,
+    };
     Tabulated {
         light: unoccluded * (1.0 - share),
-        tolerance: whole.tolerance + unoccluded * (off + rounded),
+        tolerance: whole.tolerance + unoccluded * (off + between + 4.0 * EPSILON),
     }
 }

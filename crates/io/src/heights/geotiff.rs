@@ -30,7 +30,7 @@ struct Grid {
     origin: Option<[f64; 2]>,
 }
 
-/// Sets what the tags of a file state of a raster, with scale, offset and unit of a band; bands count from 0.
+/// Fills `raster` from the tags of a file, with scale, offset and unit of a band; bands count from 0.
 pub(crate) fn read(path: &Path, tiff: &mut Tiff, band: usize, raster: &mut Raster) -> Result<()> {
     raster.nodata = nodata(path, tiff)?;
     raster.scale = scale(path, tiff, band)?;

@@ -151,22 +151,22 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);
     add(has_environment, table.idle_if(|q| q.basis == Basis::Sh));
-    let detail = "higher orders of harmonics, then tables: the environment's detail";
-    let is_every = has_specular && bounces > 0;
-    // With specular between bounces, the order counts beside tables, too.
-    let bases: &[&str] = if is_every {
-        &["basis: sh table"]
+    let has_specular_bounces = has_specular && bounces > 0;
+    // With specular and bounces, the SH order also matters beside tables: light between bounces is in SH.
+    let (bases, detail): (&[&str], _) = if has_specular_bounces {
+        (&["basis: sh table"], "SH, then tables: the environment's detail")
     } else {
-        &["basis sh sh_order: 2 3 4 5 6", "basis: table"]
+        let detail = "higher orders of harmonics, then tables: the environment's detail";
+        (&["basis sh sh_order: 2 3 4 5 6", "basis: table"], detail)
     };
-    let is_around = has_environment || (has_sky && has_specular);
-    add(is_around, Ladder::new("basis", bases, detail));
-    let sharp = "higher orders of harmonics: sharper lobes between bounces";
-    add(is_every, Ladder::new("SH order", &["sh_order: 2 3 4 5 6"], sharp));
+    let has_light_around = has_environment || (has_sky && has_specular);
+    add(has_light_around, Ladder::new("basis", bases, detail));
+    let sharp = "higher SH orders: sharper lobes between bounces";
+    add(has_specular_bounces, Ladder::new("SH order", &["sh_order: 2 3 4 5 6"], sharp));
     let dense = "visibility and indirect light at more texels: sharp shadows";
     let subsample = Ladder::new("sub-sampling", &["subsample: 4 2 1"], dense);
     add(
-        (has_environment || bounces > 0) && !is_every,
+        (has_environment || bounces > 0) && !has_specular_bounces,
         subsample.idle_if(|q| q.basis != Basis::Sh && q.bounces.count == 0),
     );
     let stored = "radiance by direction, then in full precision: specular bounces";

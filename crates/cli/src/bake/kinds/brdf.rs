@@ -142,7 +142,7 @@ pub fn table_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
     Ok(all)
 }
 
-/// Those of the table, and of a shorter form with so many terms.
+/// Stages of the table, and of a shorter form with `terms` terms.
 pub fn shorter_stages(job: &Job, is_made: bool, terms: usize) -> Result<Vec<Stage>> {
     let values = (job.angles.count().pow(2) * terms) as f64;
     let mut all = table_stages(job, is_made)?;

@@ -148,7 +148,7 @@ pub fn scatter_plan(job: &Job, scene: &Scene, scatter: &Scatter, limits: &Limits
     plan::scatter_views(scene, job.around, scatter, &views.vectors()[..at_once], limits)
 }
 
-/// That of one light. Without specular, the scene's lights take the same work.
+/// [`scatter_plan`] for one light. Without specular, the scene's lights take the same work.
 fn scatter_plan_of_one(job: &Job, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
     if specular(job).is_none() {
         return scatter_plan(job, job.scene, scatter, limits);

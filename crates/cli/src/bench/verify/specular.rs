@@ -6,7 +6,7 @@
 mod keys;
 mod spheres;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{LN_2, PI, TAU};
 
 use glam::DVec3;
 use ridgelight::Result;
@@ -27,13 +27,9 @@ use ridgelight_cpu::tolerance::{
 use super::harmonics::{Place, with_nodes};
 use super::{Device, Wanted, bounds, colours, heights_m, is_above_ground, rms, sentence, within};
 
-/// The lobe where the plan reflects sky and environment by its slices.
-fn by_slices(scene: &Scene, plan: &Plan) -> Option<PhongSpecular> {
-    let is_sliced = plan.passes.iter().any(|pass| pass.name() == "specular_light");
-    match scene.surface.specular {
-        Some(Specular::Constant(phong)) if is_sliced => Some(phong),
-        _ => None,
-    }
+/// Whether the plan reflects sky and environment by slices of the lobe.
+fn by_slices(plan: &Plan) -> bool {
+    plan.passes.iter().any(|pass| pass.name() == "specular_light")
 }
 
 /// The settings with the basis that the plan chooses for the specular surface.
@@ -69,9 +65,9 @@ pub(super) fn check(
     if shines_around(&around) {
         let around = under(around);
         let plan = plan::picture(&around, device.quality, device.limits, Picture::default())?;
-        match by_slices(&around, &plan) {
-            Some(phong) => found.extend(slices(&around, phong, (places, dark), device)?),
-            None => by_series = sunlit,
+        match by_slices(&plan) {
+            true => found.extend(slices(&around, (places, dark), device)?),
+            false => by_series = sunlit,
         }
     }
     if shines_around(&by_series) || !by_series.suns.is_empty() {
@@ -113,18 +109,18 @@ const SLICE_PLACES: usize = 12;
 /// Specular of sky and environment by slices of the lobe, against the oracle.
 fn slices(
     scene: &Scene,
-    phong: PhongSpecular,
     (places, dark): (&[usize], f64),
     device: &mut Device,
 ) -> Result<Option<String>> {
+    let specular = scene.surface.specular.as_ref().expect("Phong specular");
     let (_, layers) = device.layers(scene, true)?;
     let places: Vec<usize> =
         places.iter().step_by(places.len().div_ceil(SLICE_PLACES)).copied().collect();
     let Some(layer) = layers.iter().find(|p| p.name == "direct.specular") else {
         return Ok(None);
     };
-    let error = error_of(&colours(layer, &places), &slices_of(scene, phong, &places));
-    let bound = slices_bound(scene, phong, dark, device.quality);
+    let error = error_of(&colours(layer, &places), &slices_of(scene, specular, &places));
+    let bound = slices_bound(scene, (specular, &places), dark, device.quality);
     let within = within("specular light", "the oracle", error, bound, device.quality)?;
     Ok(Some(sentence("specular", "the oracle", within)))
 }
@@ -135,13 +131,27 @@ fn slices(
 /// 1/√12 of it in the root mean square, at two edges √2 times that. The lobe is √(2π / (n + 1)) rad wide, as a
 /// Gaussian of its deviation. Edges are where something is hidden; the light of a hidden share of half the sky has
 /// one in every lobe. Horizons err as for the sky. Tables and maps err by 1 % at most (192 × 128 texels an azimuth;
-/// nodes a quarter of the lobe apart).
-fn slices_bound(scene: &Scene, phong: PhongSpecular, dark: f64, quality: &Quality) -> f64 {
+/// nodes a quarter of the lobe apart). The narrowest lobe of the places counts. Between the exponent levels of a map, h = ln 2 apart, the
+/// hidden share errs by 0.082 h² / 8. A cubic of light errs by 1.36 (h / 2)⁴ / 24 of the largest peak of its four levels, 2^1.5 of
+/// the exponent's own at most.
+fn slices_bound(
+    scene: &Scene,
+    (specular, places): (&Specular, &[usize]),
+    dark: f64,
+    quality: &Quality,
+) -> f64 {
     let wedge = TAU / f64::from(quality.azimuths);
-    let width = (TAU / (f64::from(phong.exponent) + 1.0)).sqrt();
+    let exponents = places.iter().map(|p| specular.at(*p).exponent);
+    let width = (TAU / (f64::from(exponents.fold(0.0, f32::max)) + 1.0)).sqrt();
+    let levels = match specular {
+        Specular::Constant(_) => 0.0,
+        Specular::Map(_) => {
+            0.082 * LN_2.powi(2) / 8.0 + 1.36 * 2.0_f64.powf(1.5) * (0.5 * LN_2).powi(4) / 24.0
+        }
+    };
     let edges = (2.0 / 12.0_f64).sqrt() * wedge / width * (2.0 * dark).min(1.0).sqrt();
     let [of_sky, ..] = bounds(scene, dark, quality);
-    0.01 + edges + of_sky
+    0.01 + levels + edges + of_sky
 }
 
 /// RMSE over the root mean square.
@@ -151,13 +161,13 @@ fn error_of(found: &[DVec3], wanted: &[DVec3]) -> f64 {
 }
 
 /// The oracle's specular of sky and environment at some places.
-fn slices_of(scene: &Scene, phong: PhongSpecular, places: &[usize]) -> Vec<DVec3> {
+fn slices_of(scene: &Scene, specular: &Specular, places: &[usize]) -> Vec<DVec3> {
     let oracle = Oracle::new(&scene.field, scene.surface.border);
     let cols = scene.field.cols();
     let Lights { sky, environment, .. } = &scene.lights;
     let even = Environment::unknown(EVEN_STRIPS, 1, 0.0).expect("an even environment");
     let at = |p: &usize| {
-        let normal = Place::of(scene, *p).normal;
+        let (normal, phong) = (Place::of(scene, *p).normal, specular.at(*p));
         let receivers = [Receiver::specular_from_above(normal, phong.exponent.into())];
         let site = Site::of(&oracle, [p / cols, p % cols], &receivers);
         let of = |environment: &Environment| DVec3::from_array(site.environment(environment, 1)[0]);
@@ -287,14 +297,24 @@ mod tests {
     #[test]
     fn wrong_light_by_slices_is_refused() {
         let quality = Quality::default();
-        for exponent in [5.0, 20.0, 100.0] {
-            let of = |exponent: f32| PhongSpecular { exponent, scale: 0.5 };
+        for (exponent, is_map) in [(5.0, false), (20.0, false), (100.0, false), (20.0, true)] {
             let scene = sunlit();
+            // A map of exponents up to this one.
+            let of = |exponent: f32| match is_map {
+                false => Specular::Constant(PhongSpecular { exponent, scale: 0.5 }),
+                true => {
+                    let all = (0..scene.field.heights_m().len()).map(|i| PhongSpecular {
+                        exponent: exponent * (1 + i % 3) as f32 / 3.0,
+                        scale: 0.5,
+                    });
+                    Specular::Map(all.collect())
+                }
+            };
             let cols = scene.field.cols();
             let places: Vec<usize> = (0..scene.field.heights_m().len()).step_by(cols + 7).collect();
-            let right = slices_of(&scene, of(exponent), &places);
+            let right = slices_of(&scene, &of(exponent), &places);
             let dark = super::super::GroundTruth::of(&scene).dark();
-            let bound = slices_bound(&scene, of(exponent), dark, &quality);
+            let bound = slices_bound(&scene, (&of(exponent), &places), dark, &quality);
             assert!(bound > 0.0 && bound < 0.2, "{exponent}: {bound}");
             let mut unlit = scene.clone();
             unlit.lights.environment = None;
@@ -303,9 +323,9 @@ mod tests {
             let near = error_of(&scaled(1.0 + 0.9 * bound), &right);
             assert!(0.0 < near && near < bound, "{exponent}: {near} of {bound}");
             let wrong = [
-                ("sharper", slices_of(&scene, of(2.0 * exponent), &places)),
-                ("duller", slices_of(&scene, of(0.5 * exponent), &places)),
-                ("of another light", slices_of(&unlit, of(exponent), &places)),
+                ("sharper", slices_of(&scene, &of(2.0 * exponent), &places)),
+                ("duller", slices_of(&scene, &of(0.5 * exponent), &places)),
+                ("of another light", slices_of(&unlit, &of(exponent), &places)),
                 ("too bright", scaled(1.0 + 1.1 * bound)),
             ];
             for (what, wrong) in wrong {
