@@ -185,3 +185,28 @@ fn a_map_has_tables_where_they_fit() {
     assert!(plan.notes.iter().any(|n| n.starts_with("basis sh: the tables of the specular map")));
     of(&scene, Basis::Table, small).expect_err("beyond the budget");
 }
+
+/// Documentation states what the tables and maps of a specular map take at 32 azimuths under an environment 512 texels wide.
+#[test]
+fn tables_of_a_map_take_the_stated_memory() {
+    let environment = Environment::new(512, 256, vec![[0.5; 3]; 512 * 256], 0.0);
+    let mut scene = crate::under_sky(fractal(SIDE, 1).expect("a field"));
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+    scene.lights.environment = Some(environment.expect("an environment"));
+    let tables = ["specular_tables", "fine_specular_tables", "swept_map", "unoccluded_map"];
+    for (exponent, border, mebibytes, last_digit) in [
+        (20.0, Border::Plane, 77.0, 1.0),
+        (1e4, Border::Plane, 900.0, 10.0),
+        (1e4, Border::Open, 1450.0, 10.0),
+    ] {
+        scene.surface.border = border;
+        let texel = PhongSpecular { exponent, scale: 0.5 };
+        scene.surface.specular = Some(Specular::Map(vec![texel; SIDE * SIDE]));
+        let quality = Quality { azimuths: 32, ..Quality::default() };
+        let limits = Limits::boundless(true, 8 << 30);
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+        let found = bytes(&plan, &tables) as f64 / 1_048_576.0;
+        // Rounded to the last digit.
+        assert!((found - mebibytes).abs() <= 0.5 * last_digit, "{exponent} {border:?}: {found}");
+    }
+}

@@ -1,6 +1,8 @@
 //! From arguments to scenes, qualities and devices; what commands print while they run.
 
+mod flags;
 pub mod lights;
+mod outputs;
 pub mod scene_hash;
 mod settings_used;
 pub mod sky;
@@ -13,7 +15,6 @@ use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Bounces, HeightField, Lights, Lines, Quality, Scene, Specular, Sun, Surface,
-    setting,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
@@ -23,10 +24,14 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SceneArgs, SkyArg, SpecularArg, flag,
+    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SceneArgs, SkyArg, SpecularArg,
     grey_or_colour,
 };
-use lights::{LIGHTS, light};
+pub use flags::{flags_in, in_flags};
+use lights::light;
+pub use outputs::{
+    check_distinct, check_output, check_outputs, extension, folder_of, is_geotiff, write_layers,
+};
 pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
 pub use voids::{mask_voids, masked};
@@ -400,21 +405,6 @@ pub fn planes(pixels: &Pixels, field: &HeightField) -> Vec<Vec<f32>> {
     (0..pixels.channels.min(3)).map(channel).collect()
 }
 
-/// Writes a GeoTIFF or an EXR, by the name.
-pub fn write_layers(
-    path: &Path,
-    [rows, cols]: [usize; 2],
-    layers: &[files::Layer],
-    units: &[(&str, &str)],
-    georeference: Option<&Georeference>,
-    metadata: &[(String, String)],
-) -> Result<()> {
-    if is_geotiff(path) {
-        return files::write_geotiff(path, [rows, cols], layers, units, georeference, metadata);
-    }
-    files::write_exr(path, rows, cols, layers, metadata)
-}
-
 /// Nanoseconds of all passes.
 pub fn total_ns(times: &[Timing]) -> f64 {
     times.iter().map(|t| t.ns).sum()
@@ -427,189 +417,4 @@ pub fn after_new_heights(plan: &Plan) -> Vec<usize> {
 
 pub fn no_timestamps() -> Error {
     Error::Device { doing: "timing a frame".into(), reason: "the device has no timestamps".into() }
-}
-
-pub fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
-}
-
-/// The folder of a file.
-pub fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Whether a name is that of a GeoTIFF.
-pub fn is_geotiff(path: &Path) -> bool {
-    ["tif", "tiff"].contains(&extension(path).as_str())
-}
-
-/// ".exr, .npy or .tif"
-fn either(kinds: &[&str]) -> String {
-    let (last, others) = kinds.split_last().expect("an ending");
-    let others = others.join(", .");
-    if others.is_empty() { format!(".{last}") } else { format!(".{others} or .{last}") }
-}
-
-/// Refuses an output file that cannot be written, before the work.
-pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
-    let found = extension(path);
-    if !kinds.contains(&found.as_str()) {
-        return Err(Error::setting(
-            flag,
-            path.display().to_string(),
-            format!("a file ending in {}", either(kinds)),
-        ));
-    }
-    if path.is_dir() {
-        return Err(Error::setting(flag, format!("the directory {}", path.display()), "a file"));
-    }
-    let folder = folder_of(path);
-    if !folder.is_dir() {
-        return Err(Error::setting(
-            flag,
-            path.display().to_string(),
-            format!("a folder {} that exists", folder.display()),
-        ));
-    }
-    files::check_writable(path)
-}
-
-/// Refuses outputs that cannot be written, and one that is also another output or an input. Each has its flag and the
-/// endings that it may have.
-pub fn check_outputs(outputs: &[(&str, Option<&Path>, &[&str])], inputs: &[&Path]) -> Result<()> {
-    for (flag, path, kinds) in outputs {
-        path.map_or(Ok(()), |path| check_output(flag, path, kinds))?;
-    }
-    let outputs: Vec<_> = outputs.iter().map(|(flag, path, _)| (*flag, *path)).collect();
-    check_distinct(&outputs, inputs)
-}
-
-/// Refuses an output that is also another output or an input.
-pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Result<()> {
-    let place = |path: &Path| -> Option<PathBuf> {
-        let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
-        path.canonicalize().ok().or_else(in_folder)
-    };
-    let mut taken: Vec<(&str, Option<PathBuf>)> =
-        inputs.iter().map(|path| ("an input", place(path))).collect();
-    for (flag, path) in outputs {
-        let Some(path) = path else { continue };
-        let here = place(path);
-        if let Some((other, _)) = taken.iter().find(|(_, p)| p.is_some() && *p == here) {
-            let found = format!("{}, which is {other}", path.display());
-            return Err(Error::setting(*flag, found, "a file of its own"));
-        }
-        taken.push((flag, here));
-    }
-    Ok(())
-}
-
-/// Phrases and settings of library messages whose flag has another name.
-const FLAGS: [(&str, &str); 20] = [
-    ("sky radiance", "--sky"),
-    ("specular", "--specular"),
-    ("albedo", "--albedo"),
-    ("cell_m", "--cell"),
-    ("cell size", "--cell"),
-    ("environment rotation", "--env-rotate"),
-    ("distances to the horizon", "--distances"),
-    ("pixels per degree", "--pixels-per-degree"),
-    ("camera: look-at point", "--look-at"),
-    ("camera: field of view", "--fov"),
-    ("camera", "--camera"),
-    ("samples a pixel", "--samples"),
-    ("samples per pixel", "--samples"),
-    ("picture size", "--size"),
-    ("mesh step", "--mesh-step"),
-    ("background", "--background"),
-    ("plinth", "--plinth"),
-    ("directions", "--directions"),
-    ("curvatures of ellipses", "--curvature"),
-    ("z_scale", "--z-scale"),
-];
-
-/// Settings whose flag is their name with `-` for `_`, beside those of quality.
-const SAME: [&str; 8] =
-    ["memory_budget", "max_error", "time_budget", "border", "nodata", "band", "bbox", "paths"];
-
-/// The flag of a library name, as "azimuths" or "sun 2: elevation".
-fn flag_of(name: &str) -> Option<String> {
-    if setting(name).is_some() || SAME.contains(&name) {
-        return Some(flag(name));
-    }
-    if name == "lights" {
-        let all = ["sky", "env"].into_iter().chain(LIGHTS.iter().map(|light| light.id));
-        return Some(all.map(flag).collect::<Vec<_>>().join(", "));
-    }
-    let light = LIGHTS.iter().find_map(|light| {
-        let rest = name.strip_prefix(&light.id.replace('_', " "))?;
-        let is_numbered = rest.starts_with(' ');
-        (is_numbered || rest == "s").then(|| flag(light.id) + rest.trim_start_matches('s'))
-    });
-    if light.is_some() {
-        return light;
-    }
-    FLAGS.iter().find_map(|(ours, flag)| Some(format!("{flag}{}", name.strip_prefix(ours)?)))
-}
-
-/// Replaces settings in backticks by flags: "`lines exact`" by "--lines exact". Leaves other words in backticks.
-pub fn flags_in(text: &str) -> String {
-    let mut parts = text.split('`');
-    let mut all = parts.next().unwrap_or_default().to_owned();
-    while let Some(quoted) = parts.next() {
-        let (name, value) = quoted.split_at(quoted.find(' ').unwrap_or(quoted.len()));
-        match (flag_of(name), parts.next()) {
-            (Some(flag), Some(after)) => all += &format!("{flag}{value}{after}"),
-            (None, Some(after)) => all += &format!("`{quoted}`{after}"),
-            (_, None) => all += &format!("`{quoted}"),
-        }
-    }
-    all
-}
-
-/// A library error with the flags of its settings.
-pub fn in_flags(error: Error) -> Error {
-    match error {
-        Error::Setting { name, found, expected } => Error::Setting {
-            name: flag_of(&name).unwrap_or_else(|| flags_in(&name)),
-            found: flags_in(&found),
-            expected: flags_in(&expected),
-        },
-        Error::Limit { what, needs, limit } => {
-            Error::Limit { what: flags_in(&what), needs: flags_in(&needs), limit: flags_in(&limit) }
-        }
-        // What was found may be a text of the file.
-        Error::File { path, place, found, expected } => {
-            Error::File { path, place, found, expected: flags_in(&expected) }
-        }
-        other => other,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn settings_in_backticks_become_flags() {
-        for (text, flags) in [
-            ("`lines exact` with `suns`", "--lines exact with --sun"),
-            ("64 MiB of `memory_budget`", "64 MiB of --memory-budget"),
-            ("`bounce_engine sweep`", "--bounce-engine sweep"),
-            ("`reference` and `compare`", "`reference` and `compare`"),
-            ("an open ` stays", "an open ` stays"),
-            ("`basis sh` `sh_order 4`", "--basis sh --sh-order 4"),
-        ] {
-            assert_eq!(flags_in(text), flags);
-        }
-        let named = |name: &str| match in_flags(Error::setting(name, "", "")) {
-            Error::Setting { name, .. } => name,
-            _ => unreachable!(),
-        };
-        assert_eq!(named("azimuths"), "--azimuths");
-        assert_eq!(named("sun 2: elevation"), "--sun 2: elevation");
-        assert_eq!(named("sphere light 1: radius"), "--sphere-light 1: radius");
-        assert_eq!(named("specular scale"), "--specular scale");
-        assert_eq!(named("heights"), "heights");
-    }
 }

@@ -297,7 +297,8 @@ fn another_eye_needs_no_tables() {
 }
 
 /// The tables of a specular map's levels, which share one image of whole slices, follow the environment. A map with other exponents
-/// needs none of them: it has the bits of a plan that was made for it, as both have the same largest exponent.
+/// needs none of them: it has the bits of a plan that was made for it, as both have the same largest exponent. Exponents above it are
+/// clamped to it.
 #[test]
 fn tables_of_a_map_follow_the_environment_alone() {
     let mut device = Device::new();
@@ -305,6 +306,8 @@ fn tables_of_a_map_follow_the_environment_alone() {
     let of = |exponent| PhongSpecular { exponent, scale: 0.5 };
     let mut scene = scene(5.0);
     scene.surface.specular = Some(Specular::Map(vec![of(30.0); SIDE * SIDE]));
+    // Suns are reflected by each texel's own exponent.
+    scene.lights.suns.clear();
     let plan = planned(gpu, &scene);
     let mut contents = contents(&scene, 1);
     let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
@@ -315,6 +318,15 @@ fn tables_of_a_map_follow_the_environment_alone() {
 
     let phong = plan.find("phong").expect("an input");
     let input = plan.inputs().position(|(id, _)| id == phong).expect("an input");
+    let planned_bits = bits(gpu, &frame);
+    let above = (0..SIDE * SIDE).map(|i| of((30 + i) as f32));
+    scene.surface.specular = Some(Specular::Map(above.collect()));
+    let too_large = plan::picture_inputs(&scene).swap_remove(input);
+    gpu.refill(&frame, input, &too_large).expect("refilled");
+    let passes = frame.renderer().passes_after(&[phong]);
+    gpu.draw_passes(&mut frame, &passes).expect("drawn");
+    assert!(bits(gpu, &frame) == planned_bits);
+
     let texels = (0..SIDE * SIDE).map(|i| of((i % 31) as f32));
     scene.surface.specular = Some(Specular::Map(texels.collect()));
     let own = planned(gpu, &scene);
