@@ -10,7 +10,7 @@ use ridgelight::scene::{Quality, Scene};
 /// Once per scene: plans, and creates the plan's resources on the engine's device, for two frames in flight.
 pub fn prepare(host: &Host, scene: &Scene) -> ridgelight::Result<Renderer> {
     let limits = gpu::limits(&host.instance, host.physical_device);
-    let plan = plan::picture(scene, &Quality::default(), &limits, Picture::default())?;
+    let plan = plan::picture(scene, &Quality::for_scene(scene, None), &limits, Picture::default())?;
     Renderer::new(host, plan, 2)
 }
 

@@ -20,7 +20,8 @@ pub fn light() -> ridgelight::Result<Pixels> {
 
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let limits = gpu.report().limits;
-    let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default())?;
+    let plan =
+        plan::picture(&scene, &Quality::for_scene(&scene, None), &limits, Picture::default())?;
     gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
         gpu.draw(frame)?; // the texture is frame.outputs()[0]
         gpu.pixels(frame, 0)

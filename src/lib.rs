@@ -39,7 +39,7 @@
 //!
 //! fn prepare(host: &Host, scene: &Scene) -> ridgelight::Result<Renderer> {
 //!     let limits = gpu::limits(&host.instance, host.physical_device);
-//!     let plan = plan::picture(scene, &Quality::default(), &limits, Picture::default())?;
+//!     let plan = plan::picture(scene, &Quality::for_scene(scene, None), &limits, Picture::default())?;
 //!     Renderer::new(host, plan, 2) // two frames in flight
 //! }
 //!

@@ -92,17 +92,8 @@ impl Slices {
 
     /// The slice of a step: 1 above `elevation_rad`, [-π/2..π/2], and 0 below.
     pub fn above(&self, elevation_rad: f64) -> Vec<f64> {
-        let mut slice = vec![0.0; self.parts.len()];
-        self.above_into(elevation_rad, &mut slice);
-        slice
-    }
-
-    /// Writes [`above`](Self::above) to the first numbers of `slice`; the rest stays.
-    pub fn above_into(&self, elevation_rad: f64, slice: &mut [f64]) {
         let (sin, cos) = elevation_rad.sin_cos();
-        for (number, part) in slice.iter_mut().zip(&self.parts) {
-            *number = part.at(elevation_rad, sin, cos);
-        }
+        self.parts.iter().map(|part| part.at(elevation_rad, sin, cos)).collect()
     }
 
     /// The slice of a function that is 1 between two elevations; all 0 unless `high_rad` is above `low_rad`.

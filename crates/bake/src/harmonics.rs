@@ -33,8 +33,7 @@ impl Series {
     }
 
     fn add(&self, factors: &[f64], elevation_rad: f64, sums: &mut [f64]) {
-        let mut slice = [0.0; MAX_ORDER * (MAX_ORDER + 1) / 2];
-        self.slices.above_into(elevation_rad, &mut slice);
+        let slice = self.slices.above(elevation_rad);
         for (sum, [part, at]) in sums.iter_mut().zip(&self.places) {
             *sum += factors[*at] * slice[*part];
         }

@@ -3,7 +3,7 @@ use std::ffi::c_char;
 use ash::vk;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
-use ridgelight::scene::Border;
+use ridgelight::scene::{Border, Quality};
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::quality::{RidgelightQuality, quality};
@@ -57,9 +57,11 @@ pub unsafe extern "C" fn ridgelight_plan_create(
         hand_out(plan, || {
             let host = self::host(host)?;
             let given = read(scene, "scene")?;
-            let (scene, quality) = (self::scene(scene)?, self::quality(quality)?);
+            let scene = self::scene(scene)?;
             let mut picture = wanted(picture)?;
             picture.eye_m = (given.has_eye != 0).then_some(given.eye_m);
+            let default = Quality::for_scene(&scene, picture.eye_m);
+            let quality = self::quality(quality, default)?;
             let mut limits = gpu::limits(&host.instance, host.physical_device);
             if memory_budget != 0 {
                 limits.memory_budget = memory_budget;

@@ -11,7 +11,8 @@ pub struct RidgelightQuality {
     pub struct_size: u32,
     /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
     pub method: u32,
-    /// Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes.
+    /// Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes. Where the scene gives
+    /// heights, and horizons may cut the lobes of a surface with specular, the default is 64 to 256.
     pub azimuths: u32,
     /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
     /// soft shadows. A key light has sun_azimuths * width / 25 degrees of them, between half and 4 * sun_azimuths.
@@ -89,12 +90,11 @@ macro_rules! each_field {
     };
 }
 
-/// The quality that a struct describes; null is the default.
+/// The quality that a struct describes, in which 0 is a scene's default; null is all of it.
 ///
 /// # Safety
 /// As [`read`].
-pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
-    let default = Quality::default();
+pub(crate) unsafe fn quality(from: *const RidgelightQuality, default: Quality) -> Done<Quality> {
     if from.is_null() {
         return Ok(default);
     }
@@ -153,7 +153,7 @@ mod tests {
 
     fn arrives(q: &RidgelightQuality) -> Done<Quality> {
         // SAFETY: the struct lives and states its size.
-        unsafe { quality(q) }
+        unsafe { quality(q, Quality::default()) }
     }
 
     /// A value of each setting but the default arrives from its field.

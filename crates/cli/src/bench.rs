@@ -46,14 +46,15 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     for (flag, path) in outputs {
         path.as_ref().map_or(Ok(()), |path| setup::check_output(flag, path, &["json"]))?;
     }
-    let quality = args.quality.quality()?;
-    let counts =
-        if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
+    let mut quality = args.quality.quality()?;
     let field = match &args.input {
         Some(path) => setup::field(std::slice::from_ref(path), &args.scene.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.scene, setup::Unlit::Sky, args.global.quiet)?;
+    setup::suit(&mut quality, &args.quality, (&scene, None));
+    let counts =
+        if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
     check_specular(&scene, &quality, args)?;
     let identity = identity(&scene, args.input.is_some());
     let busy = busy();

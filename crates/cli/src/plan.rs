@@ -15,7 +15,7 @@ use crate::setup::{self, Outcome, tuned};
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let inputs = setup::inputs(&args.input.path, &args.scene);
     setup::check_outputs(&[("--json", args.global.json.as_deref(), &["json"])], &inputs)?;
-    let quality = args.quality.quality()?;
+    let mut quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
     let scene = setup::scene(
         field,
@@ -26,6 +26,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let camera_view = camera::requested(&args.camera, &scene, false)?;
     let (name, limits) = limits(&args.global)?;
     let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
+    setup::suit(&mut quality, &args.quality, (&scene, eye_m));
     let wanted = Picture { eye_m, ..setup::wanted(&[]) };
     let plan = plan::picture(&scene, &quality, &limits, wanted)?;
     let view = match &camera_view {
@@ -46,6 +47,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
                 crate::say!("\n{}", view.to_string().trim_end());
             }
             setup::say_light(&args.scene.lights, &scene, None);
+            setup::say_azimuths(&quality, &args.quality);
         }
         PlanFormat::Json => crate::say!("{:#}", json(&plan, view.as_ref())),
         PlanFormat::Dot => crate::say!("{}", dot(&plan, view.as_ref()).trim_end()),

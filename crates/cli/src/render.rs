@@ -70,11 +70,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         false => args.scene.tint.unwrap_or(Tint::None),
     };
     let scene = scene;
-    if goal.is_some() {
-        setup::check_choice(&scene, quality.bounces.count, "--max-error or --time-budget")?;
-    }
     let camera_view = camera::requested(&args.camera, &scene, is_png)?;
     let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
+    // A goal chooses them by measuring.
+    if goal.is_none() {
+        setup::suit(&mut quality, &args.quality, (&scene, eye_m));
+    }
     let wanted = Picture { eye_m, ..setup::wanted(&args.layers) };
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
@@ -237,6 +238,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             );
         }
         setup::say_light(&args.scene.lights, &scene, added_bounces);
+        if choice.is_none() {
+            setup::say_azimuths(&quality, &args.quality);
+        }
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };

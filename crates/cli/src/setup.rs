@@ -14,18 +14,18 @@ mod voids;
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Bounces, HeightField, Lights, Lines, Quality, Scene, Specular, Sun, Surface,
+    Albedo, Basis, Border, Bounces, HeightField, Lights, Lines, Quality, Scene, Specular, Sun,
+    Surface,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Georeference, HeightOptions};
-use ridgelight_trade::trade::approximates_specular;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SceneArgs, SkyArg, SpecularArg,
-    grey_or_colour,
+    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, QualityArgs, SceneArgs, SkyArg,
+    SpecularArg, grey_or_colour,
 };
 pub use flags::{flags_in, in_flags};
 use lights::light;
@@ -350,14 +350,21 @@ pub fn border(surface: &FieldArgs) -> Border {
     }
 }
 
-/// Refuses specular that `render` only approximates, where settings are compared with exact light.
-pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
-    if !approximates_specular(scene, bounces) {
-        return Ok(());
+/// Sets the scene's default number of azimuths if the user gives none. SH blurs lobes, so it needs no more for them.
+pub fn suit(quality: &mut Quality, args: &QualityArgs, (scene, eye_m): (&Scene, Option<[f64; 3]>)) {
+    if !args.gives("azimuths") && quality.basis != Basis::Sh {
+        quality.azimuths = Quality::for_scene(scene, eye_m).azimuths;
     }
-    let expected =
-        "no --bounces: specular light between bounces is only approximated, in SH of --sh-order";
-    Err(Error::setting(format!("--specular with {what}"), "specular with bounces", expected))
+}
+
+/// Prints a default number of azimuths that is the scene's.
+pub fn say_azimuths(quality: &Quality, args: &QualityArgs) {
+    let count = quality.azimuths;
+    if !args.gives("azimuths") && count != Quality::default().azimuths {
+        crate::say!(
+            "Azimuths: --azimuths {count}, as horizons may cut lobes of specular (default)."
+        );
+    }
 }
 
 /// Reports what no device can plan, before a device is opened.

@@ -21,7 +21,7 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::trade::{Place, ladders, places, refused, start};
+use ridgelight_trade::trade::{Place, ladders, places, refused, start_for};
 
 use crate::args::TradeArgs;
 use crate::render::auto;
@@ -49,15 +49,12 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
     let scene = setup::scene(field, &args.scene, setup::Unlit::Daylight(None), args.global.quiet)?;
-    if args.reference.is_none() {
-        setup::check_choice(&scene, args.bounces, "trade without --reference")?;
-    }
     if args.bounces > 0 && args.reference.is_none() {
         let expected = "--reference with as many bounces: only a path-traced reference has them";
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
-    let start = Quality { bounces, ..start() };
+    let start = Quality { bounces, ..start_for(&scene) };
     start.check()?;
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;

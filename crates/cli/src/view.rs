@@ -38,11 +38,12 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
 }
 
 /// Reads the field and checks the request.
-fn load(args: &ViewArgs, quality: Quality) -> Result<(Scene, Quality)> {
+fn load(args: &ViewArgs, mut quality: Quality) -> Result<(Scene, Quality)> {
     let field = setup::field(&args.input.path, &args.scene.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);
     let mut scene = setup::scene(field, &args.scene, unlit, args.global.quiet)?;
     setup::tinted(&mut scene, &args.scene);
+    setup::suit(&mut quality, &args.quality, (&scene, None));
     let still = setup::wanted(&[]);
     let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);
     setup::check_plan(&args.global, picture)?;

@@ -66,9 +66,9 @@ fn wrong_goals_are_refused() {
                 &["--max-error", "cannot be used with", "--bounce-azimuths"],
             ),
             (
-                "render a.asc -o out.exr --max-error 1 --bounces 2 --specular 5,0.1 --albedo 0.5",
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --specular 5,0.1 --albedo 0.5 --sh-order 3",
                 2,
-                &["--specular with --max-error", "found specular with bounces"],
+                &["--max-error", "cannot be used with", "--sh-order"],
             ),
             ("render a.asc -o out.exr --max-error 1 --bounces 65", 2, &["--bounces", "0 to 64"]),
             ("render a.asc -o out.exr --max-error 1 --seed -1", 2, &["--seed", "whole number"]),
@@ -244,6 +244,49 @@ fn gpu_a_max_error_holds_with_bounces() {
     assert!(off(0) > 0.02, "{}", off(0));
 }
 
+/// Whether the RMSE of out.exr relative to the mean, against path tracing with these arguments of `render`, is at most `at_most`.
+fn is_within(folder: &Folder, args: &str, at_most: f64) -> bool {
+    let args = args.replace("render", "reference");
+    succeeded(folder, &format!("{args} --spp 16384 -o traced.exr"));
+    let path = folder.path("traced.exr");
+    let noise: f64 = attributes(&path)["relative_standard_error"].parse().unwrap();
+    let (traced, found) = (read(&path), read(&folder.path("out.exr")));
+    let traced = plane(&traced, "R");
+    let count = traced.len() as f64;
+    let mean = traced.iter().map(|light| f64::from(*light)).sum::<f64>() / count;
+    let pairs = traced.iter().zip(plane(&found, "R"));
+    let squares = pairs.map(|(traced, found)| f64::from(traced - found).powi(2));
+    let off = (squares.sum::<f64>() / count).sqrt() / mean;
+    // The mean square of errors e with normal noise n of N texels expects e² + n², with a variance of (2 n⁴ + 4 e² n²) / N: the noise
+    // also multiplies the errors. At four standard deviations.
+    let [e, n] = [at_most, noise].map(|v| v.powi(2));
+    let most = e + n + 4.0 * ((2.0 * n * n + 4.0 * e * n) / count).sqrt();
+    assert!(noise < 0.01, "{noise}");
+    off.powi(2) <= most
+}
+
+/// With specular bounces the choice includes engines and SH orders; the error is that of all light, against path tracing. Light between
+/// lobes is the largest part of what no bounces would lose.
+#[test]
+fn gpu_a_max_error_holds_with_specular_bounces() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let scene = "render field.npy --sky 1 --albedo 0.2 --specular 5,0.7 --bounces 2";
+    let run = succeeded(&folder, &format!("{scene} -o out.exr --json out.json --max-error 0.02"));
+    for said in ["--bounce-engine", "--sh-order", "--subsample 1", "paths each"] {
+        assert!(run.out.contains(said), "{said}: {}", run.out);
+    }
+    let settings = settings(&folder);
+    let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
+    assert!(stated <= at_most && at_most <= 0.02, "{stated} {at_most}");
+    assert!(is_within(&folder, scene, at_most), "{at_most}");
+    succeeded(
+        &folder,
+        &format!("{scene} --quiet -o out.exr").replace("--bounces 2", "--bounces 0"),
+    );
+    assert!(!is_within(&folder, scene, 0.02));
+}
+
 /// The same with specular, against lobes over the oracle's horizons and against path tracing, which shares nothing with them. Its diffuse
 /// light alone would miss the goal.
 #[test]
@@ -280,19 +323,8 @@ fn gpu_a_max_error_holds_with_specular() {
     // Rounding of f32 pictures, and of the oracle's 720 azimuths against 360.
     assert!((off(1.0) - stated).abs() < 0.1 * stated + 1e-4, "{} of {stated}", off(1.0));
     assert!(off(0.0) > 0.3, "{}", off(0.0));
-    let traced = args.replace("--json out.json --max-error 0.01", "--spp 16384 --bounces 0");
-    succeeded(&folder, &format!("{} -o traced.exr", traced.replace("render", "reference")));
-    let path = folder.path("traced.exr");
-    let noise: f64 = attributes(&path)["relative_standard_error"].parse().unwrap();
-    let traced = read(&path);
-    let pairs = plane(&traced, "R").iter().zip(&exr.planes[0]);
-    let squares = pairs.map(|(traced, found)| f64::from(traced - found).powi(2));
-    let off = (squares.sum::<f64>() / all.len() as f64).sqrt() / mean;
-    // The mean square of errors e with normal noise n of N texels expects e² + n², with a variance of (2 n⁴ + 4 e² n²) / N: the noise
-    // also multiplies the errors. At four standard deviations.
-    let [e, n] = [at_most, noise].map(|v| v.powi(2));
-    let most = e + n + 4.0 * ((2.0 * n * n + 4.0 * e * n) / all.len() as f64).sqrt();
-    assert!(noise < 0.01 && off.powi(2) <= most, "{off} {noise} {at_most}");
+    let traced = args.replace("--json out.json --max-error 0.01", "--bounces 0");
+    assert!(is_within(&folder, &traced, at_most), "{at_most}");
 
     // From a camera the probes have its view: from above, the highlight would be elsewhere.
     let sun = "--sun 135,30,4,3 --camera 315,30 --size 64x36 -o camera.exr";

@@ -8,11 +8,12 @@ use crate::formats::{colour, hdr, npy, png};
 use crate::{Folder, read, succeeded};
 
 /// Runs a command that must succeed with an empty standard error (progress is for terminals) and one line on standard
-/// output, beside the light and the tone of a picture.
+/// output, beside azimuths, light and tone of a picture.
 pub fn done(folder: &Folder, args: &str) {
     let run = succeeded(folder, args);
-    let is_result =
-        |line: &&str| !["Light: ", "Picture: "].iter().any(|word| line.starts_with(word));
+    let is_result = |line: &&str| {
+        !["Azimuths: ", "Light: ", "Picture: "].iter().any(|word| line.starts_with(word))
+    };
     let results = run.out.lines().filter(is_result).count();
     assert_eq!(results, usize::from(!args.contains("--quiet")), "{}", run.out);
     let hidden = folder

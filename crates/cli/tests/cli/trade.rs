@@ -347,7 +347,7 @@ fn gpu_trade_against_a_reference() {
 }
 
 /// Per-texel specular with two bounces, against path tracing: the walk covers SH orders and storage of specular light, and
-/// leaves out settings that specular refuses. Without such a ground truth they are refused.
+/// leaves out settings that specular refuses. Without such a ground truth bounces are refused.
 #[test]
 fn gpu_trade_takes_specular() {
     let folder = Folder::new();
@@ -359,7 +359,7 @@ fn gpu_trade_takes_specular() {
     let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
     let run = folder.run_str(&bare);
     assert_eq!(run.status, Some(2), "{}", run.err);
-    let expected = "--specular with trade without --reference: found specular with bounces";
+    let expected = "--bounces: found 2, expected --reference with as many bounces";
     assert!(run.err.contains(expected), "{}", run.err);
     succeeded(&folder, &format!("{bare} --reference ground_truth.exr"));
     let report = json(&folder.path("out/trade.json"));

@@ -1,7 +1,7 @@
 //! Candidate settings.
 
 use super::model::{Part, fuse_row, spacing};
-use crate::trade::start;
+use crate::trade::{has_specular, start};
 use ridgelight::scene::{BounceEngine, Bounces, Fuse, Lines, Method, Quality, Scene};
 
 const AZIMUTHS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
@@ -19,6 +19,14 @@ const ENGINES: [(BounceEngine, u32); 6] = [
     (BounceEngine::Auto, 2),
     (BounceEngine::Auto, 1),
     (BounceEngine::BruteForce, 1),
+];
+/// Bounce engines and SH orders for light between specular bounces, which is stored at every texel.
+const SPECULAR_ENGINES: [(BounceEngine, u32); 5] = [
+    (BounceEngine::Pyramid, 2),
+    (BounceEngine::Pyramid, 4),
+    (BounceEngine::BruteForce, 3),
+    (BounceEngine::BruteForce, 4),
+    (BounceEngine::BruteForce, 6),
 ];
 const BOUNCE_AZIMUTHS: [u32; 5] = [8, 16, 32, 64, 128];
 /// Bounces are omitted where they carry at most this share of the direct light's energy.
@@ -94,6 +102,8 @@ pub(super) fn pilots(scene: &Scene, bounces: u32) -> [Quality; 3] {
         let plain = start();
         if bounces == 0 {
             (quality.bounces, quality.subsample) = (plain.bounces, plain.subsample);
+        } else if has_specular(scene) {
+            (quality.bounces.engine, quality.subsample) = (BounceEngine::Pyramid, 1);
         }
         for (part, setting, value) in [
             (Part::Azimuths, &mut quality.azimuths, plain.azimuths),
@@ -118,26 +128,32 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
             cutoffs.push(cutoff);
         }
     }
+    let order = start().sh_order;
+    let engines: Vec<(BounceEngine, u32, u32)> = match has_specular(scene) {
+        true => SPECULAR_ENGINES.map(|(engine, order)| (engine, 1, order)).into(),
+        false => ENGINES.map(|(engine, subsample)| (engine, subsample, order)).into(),
+    };
     let mut bounced = Vec::new();
     for cutoff in cutoffs {
         let none = Bounces { count, cutoff, ..Bounces::default() };
         if none.needed_bounces(albedo) == 0 {
-            bounced.push((none, 1));
+            bounced.push((none, 1, order));
             continue;
         }
-        for (engine, subsample) in ENGINES {
+        for (engine, subsample, order) in &engines {
             for azimuths in BOUNCE_AZIMUTHS {
-                bounced.push((Bounces { engine, azimuths, ..none }, subsample));
+                bounced.push((Bounces { engine: *engine, azimuths, ..none }, *subsample, *order));
             }
         }
     }
     let mut both = Vec::new();
     for quality in all {
         let is_exact = is_exact(quality);
-        for &(bounces, subsample) in &bounced {
-            // Without lines the planner itself uses brute force.
-            if !is_exact || bounces.engine != BounceEngine::BruteForce {
-                both.push(Quality { bounces, subsample, ..*quality });
+        for &(bounces, subsample, sh_order) in &bounced {
+            // Without lines the planner itself uses brute force, except with specular.
+            let is_repeated = is_exact && bounces.engine == BounceEngine::BruteForce;
+            if !is_repeated || has_specular(scene) {
+                both.push(Quality { bounces, subsample, sh_order, ..*quality });
             }
         }
     }
@@ -164,6 +180,7 @@ pub(super) fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
             q.table_elevations,
             q.sun_azimuths,
             4 / q.subsample,
+            q.sh_order,
             q.bounces.azimuths,
             match q.bounces.engine {
                 BounceEngine::Pyramid => 0,

@@ -5,7 +5,7 @@ use super::model::{fuse_row, spacing};
 use ridgelight::scene::{BounceEngine, Quality};
 
 /// Number of settings that errors depend on.
-const SETTINGS: usize = 9;
+const SETTINGS: usize = 10;
 /// Steps of settings over which the correlation falls to 1/e.
 const REACH: f64 = 2.0;
 /// The part of a residual that similar settings do not share, over the kernel's variance.
@@ -84,6 +84,7 @@ fn point_of(quality: &Quality) -> [f64; SETTINGS] {
         steps(quality.sun_azimuths),
         steps(quality.subsample),
         steps(bounces.azimuths),
+        2.0 * steps(quality.sh_order),
         match bounces.engine {
             BounceEngine::Pyramid => 0.0,
             BounceEngine::Auto | BounceEngine::Sweep => 4.0,

@@ -7,7 +7,7 @@ use super::oracle_light::{OracleLight, OracleThreads};
 use super::picks::usable_sum;
 use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
-use crate::trade::Goal;
+use crate::trade::{Goal, has_specular};
 use ridgelight::basis::random::STEP;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Basis, Lines, Method, Quality, Scene, setting};
@@ -505,6 +505,9 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
     if quality.bounces.count > 0 {
         let bounces = ["bounces", "bounce_engine", "bounce_azimuths", "bounce_cutoff", "subsample"];
         names.extend(bounces);
+        if has_specular(scene) {
+            names.push("sh_order");
+        }
     }
     let all = names.iter().filter_map(|name| setting(name));
     let all: Vec<_> = all.map(|s| format!("`{} {}`", s.name, s.get(quality))).collect();

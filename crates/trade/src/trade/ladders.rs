@@ -92,13 +92,8 @@ pub(crate) fn have_slices(lights: &Lights) -> bool {
 }
 
 /// Whether the surface has Phong specular.
-fn has_specular(scene: &Scene) -> bool {
+pub(crate) fn has_specular(scene: &Scene) -> bool {
     scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0)
-}
-
-/// Whether `render` only approximates the scene's specular: light between bounces is a series of harmonics.
-pub fn approximates_specular(scene: &Scene, bounces: u32) -> bool {
-    has_specular(scene) && bounces > 0
 }
 
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
@@ -178,7 +173,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let narrow = "more azimuths of bounces: narrow bright features";
     let azimuths = &["bounce_azimuths: 8 16 32 64"];
     add(bounces > 0, Ladder::new("bounce azimuths", azimuths, narrow));
-    let start = start();
+    let start = start_for(scene);
     for ladder in &mut all {
         let is_default = |step: &usize| {
             let mut quality = start;
@@ -194,6 +189,11 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
 /// The start of the defaults: sweeps and tables, to which they resolve.
 pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
+}
+
+/// The start of the defaults for a scene, viewed from above.
+pub fn start_for(scene: &Scene) -> Quality {
+    Quality { azimuths: Quality::for_scene(scene, None).azimuths, ..start() }
 }
 
 /// Settings, and their step on each ladder.

@@ -8,6 +8,6 @@ mod search;
 mod tests;
 
 pub use frontier::{Goal, Recommendation, Value, frontier, recommend};
-pub use ladders::{Ladder, Place, approximates_specular, ladders, places, refused, start};
-pub(crate) use ladders::{has_no_lines, have_slices};
+pub use ladders::{Ladder, Place, ladders, places, refused, start, start_for};
+pub(crate) use ladders::{has_no_lines, has_specular, have_slices};
 pub use search::{Break, SLACK, Search, Side, Skip};

@@ -98,6 +98,24 @@ fn flags_that_change_nothing_are_noted() {
     );
 }
 
+/// The default number of azimuths is the scene's where a horizon may cut lobes of specular; a given number stays.
+#[test]
+fn azimuths_for_narrow_lobes_on_steep_ground_are_printed() {
+    let folder = Folder::new();
+    write_field(&folder, 9, |r, _| if r % 4 < 2 { 4.0 * r as f32 } else { 0.0 });
+    let azimuths = |flags: &str| {
+        let run = plan(&folder, "field.npy", &format!("--albedo 0.5 {flags}"));
+        let (_, after) = run.out.split_once("azimuths ").expect("a number of azimuths");
+        let count = after.split(|c: char| !c.is_ascii_digit()).next().map(str::to_owned);
+        assert_eq!(run.err, "");
+        (count.unwrap_or_default(), run.out.contains("\nAzimuths: --azimuths 128, as "))
+    };
+    assert_eq!(azimuths("--specular 100,0.4"), ("128".into(), true));
+    for flags in ["", "--specular 100,0.4 --azimuths 32", "--specular 100,0.4 --basis sh"] {
+        assert_eq!(azimuths(flags), ("32".into(), false), "{flags}");
+    }
+}
+
 #[test]
 fn other_flags_are_not_noted() {
     let folder = folder();
