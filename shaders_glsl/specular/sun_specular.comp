@@ -49,6 +49,8 @@ layout(push_constant) uniform SunSpecularPush {
 const float NODES[15] = float[](0.5, 0.2113248654, 0.7886751346, 0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558,
                                 0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050,
                                 0.8983332387, 0.9801449282);
+// Logarithm of 1e-7.
+const float LEAST_LOG = -16.118096;
 // A light vector of this magnitude or more counts as a wholly visible sun.
 const float WHOLE = 0.999;
 const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0506142681,
@@ -82,20 +84,30 @@ Ellipse visible_part(vec3 vector, float share) {
 // Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1. Each ring has a share of the solid angle that is
 // its weight, and four directions for each ring. The error that was measured is 2.5e-4 of the lobe's peak. Where
 // n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that. At 90 degrees from the mirror
-// direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings.
-// A lobe that hardly changes across the disc is taken at its centre, unless a disc of ten times the radius reaches that end.
+// direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings, or two
+// for a small disc if the slope is finite. A lobe that changes little across the disc is taken at its centre, with the second
+// derivatives along both axes: the mean over an ellipse adds r^2/8 times their sum. Not where a wider disc reaches that end. A lobe is dark where it is nowhere 1e-7 of its peak on the disc.
 float disc_density(vec3 mirror, float n, Ellipse part) {
     n = min(n, 48.0 / max(towards.w, 1e-30));
     float wide = n * towards.w;
+    float radius = sqrt(level.w * (2.0 - level.w));
+    float to_middle = dot(mirror, part.middle);
+    float largest = min(to_middle + radius, 1.0);
+    if (largest <= 0.0 || n * log(max(largest, 1e-30)) < LEAST_LOG) {
+        return 0.0;
+    }
     // Radiance times solid angle of a disc of irradiance 1.
     float full = 2.0 / (2.0 - level.w);
-    float radius = sqrt(level.w * (2.0 - level.w));
-    float to_end = abs(dot(mirror, part.middle));
-    if (wide <= 1e-3 && to_end >= 10.0 * radius) {
-        return full * phong_lobe(part.middle - mirror, n);
-    }
-    int rings = to_end < 2.0 * radius ? 8 : wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
+    float to_end = abs(to_middle);
+    bool is_smooth = n >= 1.0;
     vec2 squared = vec2(dot(part.along, part.along), dot(part.across, part.across));
+    if (wide <= 0.05 && to_end >= (is_smooth ? 4.0 : 10.0) * radius) {
+        vec2 aside = vec2(dot(mirror, part.along), dot(mirror, part.across));
+        float bend = (n - 1.0) * dot(aside, aside) / max(to_middle * to_middle, 1e-12) - squared.x - squared.y;
+        return full * phong_lobe(part.middle - mirror, n) * (1.0 + wide / 8.0 * bend);
+    }
+    int at_end = is_smooth && radius < 0.01 ? 2 : 8;
+    int rings = to_end < 2.0 * radius ? at_end : wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
     float sum = 0.0;
     for (int i = 0; i < rings; i++) {
         float h = level.w * NODES[rings - 1 + i];
@@ -187,11 +199,12 @@ void main() {
             }
         }
         float density = reaches ? of.y * disc_density(mirror, of.x, part) : 0.0;
-        // A: written by earlier SH passes.
-        vec4 before = imageLoad(specular_sum, at);
         vec4 light = vec4(colour.rgb * (share * density), 0.0);
-        vec4 sum = before + light;
-        imageStore(specular_sum, at, colour.w > 0.0 ? light : sum);
+        if (colour.w == 0.0) {
+            // A: written by earlier SH passes.
+            light += imageLoad(specular_sum, at);
+        }
+        imageStore(specular_sum, at, light);
         if (ORDER > 0) {
             add_arriving(at, facing > 0.0 ? visible : 0.0);
         }

@@ -211,12 +211,14 @@ mod tests {
         rings.iter().map(ring).sum()
     }
 
-    /// The rule of sun_specular.comp, in f64: the number of rings, 0 for the centre alone.
+    /// The rule of sun_specular.comp, in f64: the number of rings, 0 for the centre with second derivatives.
     fn rings(radius: f64, n: f64, angle: f64) -> usize {
         let (wide, to_end) = (n * radius * radius, angle.cos().abs());
+        let near = if n >= 1.0 { 4.0 } else { 10.0 };
         match wide {
+            _ if to_end < 2.0 * radius.sin() && n >= 1.0 && radius < 0.01 => 2,
             _ if to_end < 2.0 * radius.sin() => 8,
-            _ if wide <= 1e-3 && to_end >= 10.0 * radius.sin() => 0,
+            _ if wide <= 0.05 && to_end >= near * radius.sin() => 0,
             _ if wide <= 0.15 => 1,
             _ if wide <= 2.0 => 2,
             _ if wide <= 11.0 => 4,
@@ -233,14 +235,14 @@ mod tests {
             (0..RINGS).map(|i| [(i as f64 + 0.5) / RINGS as f64, 1.0 / RINGS as f64]).collect();
         let rules: Vec<_> = (0..9).map(gauss).collect();
         let mut too_few = [0; 9];
-        for radius in [0.004, 0.04, 0.17, 0.4, 0.8, 1.5] {
+        for radius in [0.004, 0.0099, 0.03, 0.04, 0.17, 0.4, 0.8, 1.5] {
             let sun = Sun {
                 azimuth_rad: 0.0,
                 elevation_rad: 0.0,
                 diameter_rad: 2.0 * radius,
                 irradiance: [1.0; 3],
             };
-            let changes = [1e-3, 0.15, 2.0, 11.0, 47.0].map(|wide| wide / (radius * radius));
+            let changes = [0.05, 0.15, 2.0, 11.0, 47.0].map(|wide| wide / (radius * radius));
             let exponents = changes.iter().flat_map(|n| [0.999 * n, 1.001 * n]);
             for n in exponents.chain([0.0, 0.1, 0.3, 0.6, 0.9, 1.0, 1.1, 1.5]) {
                 if n > 1e4 || n * radius * radius > 48.0 {
@@ -252,8 +254,14 @@ mod tests {
                 for angle in near.chain(at_end).filter(|a| (0.0..=0.5 * PI + radius).contains(a)) {
                     let of = (radius, n, angle);
                     let want = mean(&fine, 250, of, 0.0);
+                    let largest = (angle.cos() + radius.sin()).clamp(0.0, 1.0);
+                    let is_dark = largest == 0.0 || largest.powf(n) < 1e-7;
                     let by = |count: usize, turned: f64| match count {
-                        0 if angle.cos() > 0.0 => angle.cos().powf(n),
+                        _ if is_dark => 0.0,
+                        0 if angle.cos() > 0.0 => {
+                            let bend = (n - 1.0) * angle.tan().powi(2) - 2.0;
+                            angle.cos().powf(n) * (1.0 + n * radius * radius / 8.0 * bend)
+                        }
                         0 => 0.0,
                         _ => mean(&rules[count], 4 * count, of, turned),
                     };
