@@ -49,8 +49,8 @@ layout(push_constant) uniform SunSpecularPush {
 const float NODES[15] = float[](0.5, 0.2113248654, 0.7886751346, 0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558,
                                 0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050,
                                 0.8983332387, 0.9801449282);
-// Logarithm of 1e-7.
-const float LEAST_LOG = -16.118096;
+// ln(1e-7): lobes below this share of their peak are skipped.
+const float DARK_LOG = -16.118096;
 // A light vector of this magnitude or more counts as a wholly visible sun.
 const float WHOLE = 0.999;
 const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0506142681,
@@ -81,32 +81,34 @@ Ellipse visible_part(vec3 vector, float share) {
     return Ellipse(middle, (1.0 - c) * along, sqrt((1.0 - c) * (1.0 + 1.7 * c)) * cross(middle, along));
 }
 
-// Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1. Each ring has a share of the solid angle that is
-// its weight, and four directions for each ring. The error that was measured is 2.5e-4 of the lobe's peak. Where
-// n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that. At 90 degrees from the mirror
-// direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings, or two
-// for a small disc if the slope is finite. A lobe that changes little across the disc is taken at its centre, with the second
-// derivatives along both axes: the mean over an ellipse adds r^2/8 times their sum. Not where a wider disc reaches that end. A lobe is dark where it is nowhere 1e-7 of its peak on the disc.
+// Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1, with an error of at most 2.5e-4 of the
+// lobe's peak (measured: rings_are_as_many_as_a_lobe_needs in sun_specular.rs). Each ring has a share of the solid angle that is its weight, and
+// four times as many directions as there are rings. Where n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that.
+// At 90 degrees from the mirror direction the lobe ends, and its slope may jump. If a disc of twice the radius reaches that end,
+// there are eight rings, or two for a small disc and a finite slope. A lobe that changes little across the disc is evaluated at the
+// centre only, with its second derivatives along both half axes; not if a disc of four or ten times the radius reaches that end.
 float disc_density(vec3 mirror, float n, Ellipse part) {
     n = min(n, 48.0 / max(towards.w, 1e-30));
     float wide = n * towards.w;
     float radius = sqrt(level.w * (2.0 - level.w));
     float to_middle = dot(mirror, part.middle);
-    float largest = min(to_middle + radius, 1.0);
-    if (largest <= 0.0 || n * log(max(largest, 1e-30)) < LEAST_LOG) {
+    float cos_radius = 1.0 - level.w;
+    float at_edge = to_middle * cos_radius + sqrt(max(1.0 - to_middle * to_middle, 0.0)) * radius;
+    float largest = to_middle < cos_radius ? at_edge : 1.0;
+    if (largest <= 0.0 || n * log(max(largest, 1e-30)) < DARK_LOG) {
         return 0.0;
     }
     // Radiance times solid angle of a disc of irradiance 1.
     float full = 2.0 / (2.0 - level.w);
     float to_end = abs(to_middle);
-    bool is_smooth = n >= 1.0;
+    bool has_finite_slope = n >= 1.0;
     vec2 squared = vec2(dot(part.along, part.along), dot(part.across, part.across));
-    if (wide <= 0.05 && to_end >= (is_smooth ? 4.0 : 10.0) * radius) {
+    if (wide <= 0.05 && to_end >= (has_finite_slope ? 4.0 : 10.0) * radius) {
         vec2 aside = vec2(dot(mirror, part.along), dot(mirror, part.across));
         float bend = (n - 1.0) * dot(aside, aside) / max(to_middle * to_middle, 1e-12) - squared.x - squared.y;
         return full * phong_lobe(part.middle - mirror, n) * (1.0 + wide / 8.0 * bend);
     }
-    int at_end = is_smooth && radius < 0.01 ? 2 : 8;
+    int at_end = has_finite_slope && radius < 0.01 ? 2 : 8;
     int rings = to_end < 2.0 * radius ? at_end : wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
     float sum = 0.0;
     for (int i = 0; i < rings; i++) {

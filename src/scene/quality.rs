@@ -20,8 +20,8 @@ settings! {
 
         /// Azimuths of sky and environment, 4 to 1024
         ///
-        /// Fewer show banding; more take time and memory in proportion. Where horizons may cut many lobes of specular, commands
-        /// use 64 to 256 by default, by the exponent.
+        /// Fewer show banding; more take time and memory in proportion. With specular under a sky or an environment on steep ground,
+        /// commands use 64 to 256 by default, depending on the exponent; with `basis sh` they use 32.
         ///
         /// Under an environment they are densest where it is brightest when the plan is made (even with exact lines and
         /// with harmonics); an environment that changes later keeps them.
@@ -179,27 +179,27 @@ pub fn setting(name: &str) -> Option<&'static Setting> {
     SETTINGS.iter().find(|setting| setting.name == name)
 }
 
-/// Azimuths for a lobe that a horizon may cut, by the largest exponent that each is for.
+/// Default azimuths where horizons may cut lobes: (largest exponent, azimuths).
 ///
-/// Measured under a uniform sky and an environment on a fault, a steep mountain, hills three times as high and moss: with 32
-/// azimuths the RMSE of the specular layer is 0.7 to 2 % at exponent 20, 1.6 to 4.4 % at 100, and 3.6 to 12 % at 1,000.
+/// Measured under a uniform sky on 96² grid points of the Jacksboro fault, of Mt Washington and N44W072 three times as high, and of moss:
+/// with 32 azimuths the RMSE of the specular layer is 0.7 to 2 % at exponent 20, 1.6 to 4.4 % at 100, and 3.6 to 12 % at 1,000.
 const BY_EXPONENT: [(f32, u32); 3] = [(50.0, 64), (3000.0, 128), (f32::INFINITY, 256)];
 
-/// The most of them under an environment, where each has tables of its own: for one exponent, and for a map, whose tables are
-/// several times as large. The error there is about half of that under a sky.
+/// Largest default under an environment, where each azimuth has its own tables: for a constant exponent, and for a specular map, which
+/// needs several times the memory.
 const UNDER_ENVIRONMENT: [u32; 2] = [128, 64];
 
-/// Share of texels whose lobes a horizon may cut, from which on the default has more azimuths. It is 9 % or less where 32
-/// azimuths are enough, and 22 % or more where they are not, on ten fields viewed from above.
+/// The default has more azimuths if a horizon may cut at least this share of the lobes. On ten fields viewed from above it is 9 %
+/// or less where 32 azimuths are enough, and 22 % or more elsewhere.
 const SHARE_CUT: f64 = 0.125;
 
-/// Texels along each side that decide about the azimuths.
+/// `share_cut` reads at most this many texels along each side.
 const SAMPLED: usize = 256;
 
 impl Quality {
-    /// The defaults for a scene. They have more azimuths where specular reflects sky or environment and where horizons may cut
-    /// the lobes of at least an eighth of the texels: lobes whose mirror direction is lower than the mean slope. `eye_m` is
-    /// [`Picture::eye_m`](crate::plan::Picture::eye_m). Unknown heights have the plain defaults.
+    /// The defaults for a scene. With specular under a sky or an environment, steep ground gets 64 to 256 azimuths: where at least an
+    /// eighth of the texels that face the eye have a mirror direction below the mean slope. `eye_m` is
+    /// [`Picture::eye_m`](crate::plan::Picture::eye_m). If the heights are unknown, this is the same as [`default`](Self::default).
     pub fn for_scene(scene: &Scene, eye_m: Option<[f64; 3]>) -> Self {
         let default = Self::default();
         let Scene { field, surface, lights } = scene;
@@ -244,7 +244,7 @@ impl Quality {
     }
 }
 
-/// Share of the texels that an eye sees from their front whose mirror direction is lower than the mean slope of the field.
+/// Of the texels that face the eye, the share whose mirror direction is lower than the mean slope of the field.
 fn share_cut(field: &HeightField, surface: &Surface, eye_m: Option<[f64; 3]>) -> f64 {
     let [rows, cols] = [field.rows(), field.cols()];
     let [down, across] = [rows, cols].map(|count| count.div_ceil(SAMPLED));
@@ -256,7 +256,7 @@ fn share_cut(field: &HeightField, surface: &Surface, eye_m: Option<[f64; 3]>) ->
     let count = normals().count() as f64;
     let mean_slope_rad = normals().map(|normal| normal.z.min(1.0).acos()).sum::<f64>() / count;
     let [cell_x, cell_y] = field.cell_m();
-    let (mut visible, mut cut) = (0.0, 0.0);
+    let (mut front, mut cut) = (0.0, 0.0);
     for ((row, col), normal) in texels().zip(normals()) {
         let height_m = f64::from(field.heights_m()[row * cols + col]) + field.base_m();
         let place = DVec3::new(col as f64 * cell_x, (rows - 1 - row) as f64 * cell_y, height_m);
@@ -264,11 +264,11 @@ fn share_cut(field: &HeightField, surface: &Surface, eye_m: Option<[f64; 3]>) ->
         let facing = normal.dot(view);
         if facing > 0.0 {
             let mirror_up = 2.0 * facing * normal.z - view.z;
-            visible += 1.0;
+            front += 1.0;
             cut += f64::from(u8::from(mirror_up < mean_slope_rad.sin()));
         }
     }
-    if visible > 0.0 { cut / visible } else { 0.0 }
+    if front > 0.0 { cut / front } else { 0.0 }
 }
 
 impl Bounces {
@@ -359,8 +359,8 @@ mod tests {
         assert_eq!(azimuths(&Scene { field: unknown, ..steep }, None), 32);
     }
 
-    /// A slope of 10°, downhill towards the south: an eye in the north, 20° above horizontal, is mirrored to the horizontal in the
-    /// south, one in the south to 40° in the north. An eye in the north 5° above horizontal sees the back of the slope, which counts nothing.
+    /// A plane that falls to the south at 10°. For an eye in the north at 20° elevation, the mirror direction is horizontal, to the
+    /// south. For one in the south it is 40° up, to the north. An eye in the north at 5° is behind the plane; its texels do not count.
     #[test]
     fn the_eye_decides_which_lobes_a_horizon_cuts() {
         let eye = |north: f64, degrees: f64| {

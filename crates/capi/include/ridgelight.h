@@ -215,8 +215,8 @@ typedef struct RidgelightQuality {
     uint32_t struct_size;
     // How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
     uint32_t method;
-    // Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes. Where the scene gives
-    // heights, and horizons may cut the lobes of a surface with specular, the default is 64 to 256.
+    // Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes. With specular under a
+    // sky or an environment on steep ground the default is 64 to 256. With unknown heights, and with basis sh, it is 32.
     uint32_t azimuths;
     // Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
     // soft shadows. A key light has sun_azimuths * width / 25 degrees of them, between half and 4 * sun_azimuths.

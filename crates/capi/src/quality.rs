@@ -1,4 +1,4 @@
-use ridgelight::scene::{Quality, Values, setting};
+use ridgelight::scene::{Basis, Quality, Values, setting};
 
 use crate::errors::{Done, Failure};
 use crate::read::{SizeFirst, read};
@@ -11,8 +11,8 @@ pub struct RidgelightQuality {
     pub struct_size: u32,
     /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
     pub method: u32,
-    /// Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes. Where the scene gives
-    /// heights, and horizons may cut the lobes of a surface with specular, the default is 64 to 256.
+    /// Azimuths of sky and environment, [4..1024], default 32. Fewer: faster, banding at sharp silhouettes. With specular under a
+    /// sky or an environment on steep ground the default is 64 to 256. With unknown heights, and with basis sh, it is 32.
     pub azimuths: u32,
     /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
     /// soft shadows. A key light has sun_azimuths * width / 25 degrees of them, between half and 4 * sun_azimuths.
@@ -90,7 +90,7 @@ macro_rules! each_field {
     };
 }
 
-/// The quality that a struct describes, in which 0 is a scene's default; null is all of it.
+/// The quality that a struct describes. A field of 0, or a null pointer, takes the value of `default`.
 ///
 /// # Safety
 /// As [`read`].
@@ -124,6 +124,9 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality, default: Quality) -
             _ => (value - if name.is_some() { 1.0 } else { 0.0 }).to_string(),
         };
         setting.set(&mut quality, &text)?;
+    }
+    if q.azimuths == 0 && quality.basis == Basis::Sh {
+        quality.azimuths = Quality::default().azimuths;
     }
     Ok(quality)
 }
@@ -185,6 +188,21 @@ mod tests {
             let changed = SETTINGS.iter().filter(|s| s.get(&found) != s.get(&Quality::default()));
             assert_eq!(changed.map(|s| s.name).collect::<Vec<_>>(), [setting.name]);
         }
+    }
+
+    /// The caller's default stands where a field is 0, but SH needs no more azimuths for narrow lobes.
+    #[test]
+    fn azimuths_default_to_those_of_the_scene() {
+        let default = Quality { azimuths: 128, ..Quality::default() };
+        let azimuths = |q: *const RidgelightQuality| {
+            // SAFETY: the struct lives and states its size, or is null.
+            unsafe { quality(q, default) }.ok().unwrap().azimuths
+        };
+        assert_eq!(azimuths(std::ptr::null()), 128);
+        assert_eq!(azimuths(&with("fuse", 1.0)), 128);
+        assert_eq!(azimuths(&with("azimuths", 16.0)), 16);
+        assert_eq!(azimuths(&with("basis", 3.0)), 32);
+        assert_eq!(azimuths(&with("basis", 2.0)), 128);
     }
 
     /// A number means what ridgelight.h says, whatever the order of the library's words.

@@ -55,12 +55,12 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         setup::georeferenced(&args.input.path, &args.scene.field, &args.global)?;
     let scene = setup::scene(field, &args.scene, setup::Unlit::Sky, args.global.quiet)?;
     let around = request::directions(args, args.directions.unwrap_or(request::DIRECTIONS))?;
-    let mut pictures = quality;
-    setup::suit(&mut pictures, &args.quality, (&scene, None));
+    let mut specular_quality = quality;
+    setup::suit(&mut specular_quality, &args.quality, (&scene, None));
     let mut job = Job {
         scene: &scene,
         quality: &quality,
-        pictures,
+        specular_quality,
         // Of a machine without a device; the device's own replace them once it is open.
         limits: Limits::boundless(true, u64::MAX),
         scatter: request::scatter(args, &quality),

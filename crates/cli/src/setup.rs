@@ -350,19 +350,19 @@ pub fn border(surface: &FieldArgs) -> Border {
     }
 }
 
-/// Sets the scene's default number of azimuths if the user gives none. SH blurs lobes, so it needs no more for them.
+/// Sets the scene's default number of azimuths unless the user gives one. `--basis sh` keeps 32, because SH blurs narrow lobes.
 pub fn suit(quality: &mut Quality, args: &QualityArgs, (scene, eye_m): (&Scene, Option<[f64; 3]>)) {
     if !args.gives("azimuths") && quality.basis != Basis::Sh {
         quality.azimuths = Quality::for_scene(scene, eye_m).azimuths;
     }
 }
 
-/// Prints a default number of azimuths that is the scene's.
+/// Prints the default number of azimuths where the scene changes it.
 pub fn say_azimuths(quality: &Quality, args: &QualityArgs) {
     let count = quality.azimuths;
     if !args.gives("azimuths") && count != Quality::default().azimuths {
         crate::say!(
-            "Azimuths: --azimuths {count}, as horizons may cut lobes of specular (default)."
+            "Azimuths: --azimuths {count}, because horizons may cut lobes of specular (default)."
         );
     }
 }

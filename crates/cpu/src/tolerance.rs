@@ -281,7 +281,7 @@ pub fn device_sh_specular(order: usize, normal_error: f64) -> f64 {
 /// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is visible
 /// is a quotient by a cosine that errs as the normal does and by 6 ε: at most 1, of which that is the share.
 /// The mean over a disc is one of such values, whose directions err by another 6 ε, with up to 8 + 32 sums; besides
-/// [`disc_rings`]. Below 1e-7 of its peak, 2 ε, a lobe counts as dark.
+/// [`disc_rings`]. Lobes below 1e-7 of their peak are skipped: another 2 ε.
 pub fn device_sun_specular(exponent: f64, normal_error: f64, facing: f64) -> f64 {
     let peak = (exponent + 1.0) / (2.0 * PI);
     let turned = (exponent / std::f64::consts::E).sqrt() * (2.0 * normal_error + 12.0 * EPSILON);

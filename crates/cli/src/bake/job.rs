@@ -23,8 +23,8 @@ pub const HORIZONS: &str = "horizons";
 pub struct Job<'a> {
     pub scene: &'a Scene,
     pub quality: &'a Quality,
-    /// The same for pictures of specular.
-    pub pictures: Quality,
+    /// `quality` with the scene's default azimuths, for pictures with specular.
+    pub specular_quality: Quality,
     pub limits: Limits,
     /// Scattered light; none without bounces.
     pub scatter: Option<Scatter>,

@@ -211,7 +211,7 @@ mod tests {
         rings.iter().map(ring).sum()
     }
 
-    /// The rule of sun_specular.comp, in f64: the number of rings, 0 for the centre with second derivatives.
+    /// The rule of sun_specular.comp, in f64: the number of rings; 0: the value at the centre with its second derivatives.
     fn rings(radius: f64, n: f64, angle: f64) -> usize {
         let (wide, to_end) = (n * radius * radius, angle.cos().abs());
         let near = if n >= 1.0 { 4.0 } else { 10.0 };
@@ -254,8 +254,8 @@ mod tests {
                 for angle in near.chain(at_end).filter(|a| (0.0..=0.5 * PI + radius).contains(a)) {
                     let of = (radius, n, angle);
                     let want = mean(&fine, 250, of, 0.0);
-                    let largest = (angle.cos() + radius.sin()).clamp(0.0, 1.0);
-                    let is_dark = largest == 0.0 || largest.powf(n) < 1e-7;
+                    let largest = (angle - radius).max(0.0).cos();
+                    let is_dark = largest <= 0.0 || largest.powf(n) < 1e-7;
                     let by = |count: usize, turned: f64| match count {
                         _ if is_dark => 0.0,
                         0 if angle.cos() > 0.0 => {

@@ -20,7 +20,7 @@ const ENGINES: [(BounceEngine, u32); 6] = [
     (BounceEngine::Auto, 1),
     (BounceEngine::BruteForce, 1),
 ];
-/// Bounce engines and SH orders for light between specular bounces, which is stored at every texel.
+/// Bounce engines and SH orders with specular, for which light between bounces is stored at every texel.
 const SPECULAR_ENGINES: [(BounceEngine, u32); 5] = [
     (BounceEngine::Pyramid, 2),
     (BounceEngine::Pyramid, 4),
@@ -150,7 +150,7 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     for quality in all {
         let is_exact = is_exact(quality);
         for &(bounces, subsample, sh_order) in &bounced {
-            // Without lines the planner itself uses brute force, except with specular.
+            // Without lines, `auto` is brute force already; with specular it is the pyramid.
             let is_repeated = is_exact && bounces.engine == BounceEngine::BruteForce;
             if !is_repeated || has_specular(scene) {
                 both.push(Quality { bounces, subsample, sh_order, ..*quality });

@@ -191,7 +191,7 @@ pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
 }
 
-/// The start of the defaults for a scene, viewed from above.
+/// [`start`] with the scene's default azimuths, for a view from straight above.
 pub fn start_for(scene: &Scene) -> Quality {
     Quality { azimuths: Quality::for_scene(scene, None).azimuths, ..start() }
 }

@@ -85,7 +85,8 @@ pub fn diffuse(job: &Job) -> Scene {
 
 /// Direct light of all texels; specular towards straight above.
 pub fn direct_plan(job: &Job, scene: &Scene, limits: &Limits) -> Result<Plan> {
-    let quality = if scene.surface.specular.is_some() { &job.pictures } else { job.quality };
+    let quality =
+        if scene.surface.specular.is_some() { &job.specular_quality } else { job.quality };
     let bounces = Bounces { count: 0, ..quality.bounces };
     let quality = Quality { bounces, ..*quality };
     let still = Picture { still: true, ..Picture::default() };

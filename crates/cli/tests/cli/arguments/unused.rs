@@ -98,7 +98,7 @@ fn flags_that_change_nothing_are_noted() {
     );
 }
 
-/// The default number of azimuths is the scene's where a horizon may cut lobes of specular; a given number stays.
+/// On steep ground with specular, the default number of azimuths is larger and is printed. `--azimuths` and `--basis sh` keep 32.
 #[test]
 fn azimuths_for_narrow_lobes_on_steep_ground_are_printed() {
     let folder = Folder::new();
@@ -108,7 +108,7 @@ fn azimuths_for_narrow_lobes_on_steep_ground_are_printed() {
         let (_, after) = run.out.split_once("azimuths ").expect("a number of azimuths");
         let count = after.split(|c: char| !c.is_ascii_digit()).next().map(str::to_owned);
         assert_eq!(run.err, "");
-        (count.unwrap_or_default(), run.out.contains("\nAzimuths: --azimuths 128, as "))
+        (count.unwrap_or_default(), run.out.contains("\nAzimuths: --azimuths 128, because "))
     };
     assert_eq!(azimuths("--specular 100,0.4"), ("128".into(), true));
     for flags in ["", "--specular 100,0.4 --azimuths 32", "--specular 100,0.4 --basis sh"] {
