@@ -1,6 +1,6 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches; and the light that the horizons hide from a Phong lobe.
-// Reads: lane_heights, lane_buffer, azimuths, lattice, env_tables, specular_tables, phong_map, constants, dirty_texels,
+// Reads: lane_heights, lane_windows, lane_buffer, azimuths, lattice, env_tables, specular_tables, phong_map, constants, dirty_texels,
 // edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
 // RGB), blocked_sum (radiance for scale 1, RGB), blocked_above (of a map: for the level of exponents above).
@@ -32,11 +32,15 @@ layout(constant_id = 9) const bool READS_LANE_BUFFER = false;
 // The exponent varies; see levels.glsl.
 layout(constant_id = 10) const bool SPECULAR_IS_MAP = false;
 
-layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+#define LANE_WINDOWS
+layout(constant_id = 11) const bool READS_LANE_WINDOWS = false;
+
+layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
+layout(binding = 16, rgba32f) uniform restrict readonly image2D lane_windows;
 layout(binding = 11) readonly buffer LaneBuffer { float lane_buffer[]; };
 layout(binding = 12) readonly buffer AzimuthBuffer { vec4 azimuth_buffer[]; };
 // LATTICE selects one of these.
-layout(binding = 1, rgba16ui) uniform readonly uimage2DArray lattice;
+layout(binding = 1, rgba16ui) uniform restrict readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"

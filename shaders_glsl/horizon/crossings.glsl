@@ -7,16 +7,23 @@
 // arbitrary height and do not count.
 vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
     int march = march_position(azimuth, neighbour(step, steps), steps);
+    bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int mirrored = lanes - 4 - lane;
+    int first = flips ? mirrored : lane;
     vec4 row;
+#ifdef LANE_WINDOWS
+    if (READS_LANE_WINDOWS) {
+        first = BORDER == BORDER_PERIODIC ? wrapped(first, lanes) : clamp(first, -3, lanes - 1);
+        row = imageLoad(lane_windows, ivec2(first + 3, march));
+        return mix(row, row.wzyx, bvec4(flips));
+    }
+#endif
     if (BORDER == BORDER_PERIODIC) {
         for (int i = 0; i < 4; i++) {
             row[i] = height_at(lane_position(azimuth, wrapped(lane + i, lanes), lanes), march);
         }
         return row;
     }
-    bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    int mirrored = lanes - 4 - lane;
-    int first = flips ? mirrored : lane;
 #ifdef LANE_BUFFER
     if (READS_LANE_BUFFER) {
         // Clamping changes only the heights of lanes beyond the field.

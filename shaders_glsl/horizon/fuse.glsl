@@ -5,8 +5,8 @@
 #include "horizon/crossings.glsl"
 
 // Resamples the lattice of a sweep at the field's grid points, four at a time. The including shader declares
-// `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES, LATTICE_STRIDE,
-// LINE_SHIFT, BORDER, MARCHES_ROWS and LANE_STRIDE.
+// `lane_heights`, `lane_windows`, `lattice`, `lattice_words` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES,
+// LATTICE_STRIDE, LINE_SHIFT, BORDER, MARCHES_ROWS, LANE_STRIDE and READS_LANE_WINDOWS.
 //
 // `mix` selects between two expressions, here and in included files. `c ? a + b : a - b` is a branch, and
 // SwiftShader's compiler follows every path through a loop: each branch doubles them.
@@ -35,28 +35,11 @@ uvec4 lattice_at(ivec3 texel) {
     return LATTICE == LATTICE_SLOPES_F32 ? texelFetch(lattice_words, texel, 0) : imageLoad(lattice, texel);
 }
 
-// Value i of the eight in two texels.
-uint value_of_eight(uvec4 a, uvec4 b, int i) {
-    return lattice_value(mix(a, b, bvec4(i >= 4)), i);
-}
-
-// Lattice values of four lines at a step (occluders: steps back). Where lines follow lanes, all of them lie in lowest
-// .. lowest + 4.
-uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int step) {
+// Lattice values of four lines at a step (occluders: steps back).
+uvec4 lattice_values(Azimuth azimuth, ivec4 line, int step) {
     uvec4 values;
-    if (LINES_FOLLOW_LANES) {
-        int first = lowest & ~3;
-        uvec4 a = lattice_at(lattice_texel(azimuth, lowest, step));
-        uvec4 b = lattice_at(lattice_texel(azimuth, min(lowest + 4, lines - 1), step));
-        values.x = value_of_eight(a, b, line.x - first);
-        values.y = value_of_eight(a, b, line.y - first);
-        values.z = value_of_eight(a, b, line.z - first);
-        values.w = value_of_eight(a, b, line.w - first);
-    } else {
-        for (int k = 0; k < 4; k++) {
-            uvec4 a = lattice_at(lattice_texel(azimuth, line[k], step));
-            values[k] = value_of_eight(a, a, line[k] & 3);
-        }
+    for (int k = 0; k < 4; k++) {
+        values[k] = lattice_value(lattice_at(lattice_texel(azimuth, line[k], step)), line[k]);
     }
     return values;
 }
@@ -96,78 +79,98 @@ Met higher_where(vec4 own, bvec4 counts, Met met, vec4 a, vec4 b, vec4 u, vec4 s
     return Met(mix(met.slope, slope, takes), mix(met.steps, steps, takes));
 }
 
-// Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
-// proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
-// lie there. `reach` steps lie ahead. The crossings are those of look_around, for four grid points at once: change both.
-void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
+// How far raise_beside has come.
+struct Beside {
+    ivec4 y;      // place across the lanes, at the step before
+    ivec4 cell;   // of y
+    mat4 near;    // near[i][k]: height of lane cell[k] - 1 + i there, for grid point k
+    Met found;    // rises per step
+};
+
+// One step of raise_beside, to `back` steps ahead; none past `last`.
+void step_beside(Azimuth azimuth, Quad q, ivec4 back, ivec4 last, int lanes, int steps, inout Beside beside) {
     bool wraps = BORDER == BORDER_PERIODIC;
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     bvec4 along = bvec4(flips_march == flips_lanes);
-    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
     int step = march_position(azimuth, q.march, steps);
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
     float per_lane = 1.0 / max(advance, 1e-9);
     float per_split_across = 1.0 / (1.0 + advance);
     float per_split = flips_march == flips_lanes ? 1.0 / max(1.0 - advance, 1e-9) : per_split_across;
     vec4 own = q.here.four;
-    ivec4 at = mix(other, nearer, greaterThan(nearer, ivec4(0)));
-    ivec4 towards = mix(ivec4(0), sign(other - at), greaterThan(other, ivec4(0)));
-    ivec4 first = max(at + min(towards, 0), 1);
-    ivec4 last = mix(ivec4(0), min(at + 1 + max(towards, 0), reach), greaterThan(at, ivec4(0)));
     // With shear 0 a line stays in its lane and leaves no side of the field.
     int edge = wraps || azimuth.shear == 0 ? -0x7fffffff : 0;
     int lowest_on = wraps ? -0x7fffffff : 0;
 
-    // near[i][k]: the height of lane near_cell[k] - 1 + i, for grid point k.
-    ivec4 y = lane * CELL - (first - 1) * azimuth.shear;
-    ivec4 near_cell = y >> CELL_SHIFT;
-    mat4 near;
+    bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(beside.y, ivec4(edge))));
+    beside.y -= azimuth.shear;
+    // A line whose far end is off the field leaves at lane 0, the lane line that it crosses. That crossing, and those before it, count.
+    bvec4 is_on = bvec4(uvec4(exists) & uvec4(greaterThanEqual(beside.y, ivec4(lowest_on))));
+    ivec4 cell = beside.y >> CELL_SHIFT;
+    mat4 far;
     for (int k = 0; k < 4; k++) {
-        near[k] = row_at(azimuth, near_cell[k] - 1, step - first[k] + 1, lanes, steps);
+        far[k] = row_at(azimuth, cell[k] - 1, step - back[k], lanes, steps);
     }
-    near = transpose(near);
-    // Rises per step.
-    Met found = Met(vec4(NO_SLOPE), vec4(0.0));
-    // If the loop is unrolled, RADV uses more registers: with specular, occupancy falls by a third.
-    [[dont_unroll]] for (int i = 0; i < 3; i++) {
-        ivec4 back = first + i;
-        bvec4 exists = bvec4(uvec4(lessThanEqual(back, last)) & uvec4(greaterThan(y, ivec4(edge))));
-        y -= azimuth.shear;
-        // A line whose far end is off the field leaves at lane 0, the lane line that it crosses. That crossing, and those before it, count.
-        bvec4 is_on = bvec4(uvec4(exists) & uvec4(greaterThanEqual(y, ivec4(lowest_on))));
-        ivec4 cell = y >> CELL_SHIFT;
-        mat4 far;
-        for (int k = 0; k < 4; k++) {
-            far[k] = row_at(azimuth, cell[k] - 1, step - back[k], lanes, steps);
-        }
-        far = transpose(far);
-        bvec4 same_cell = equal(cell, near_cell);
-        vec4 near_low = mix(near[0], near[1], same_cell);
-        vec4 near_high = mix(near[1], near[2], same_cell);
+    far = transpose(far);
+    bvec4 same_cell = equal(cell, beside.cell);
+    vec4 near_low = mix(beside.near[0], beside.near[1], same_cell);
+    vec4 near_high = mix(beside.near[1], beside.near[2], same_cell);
 
-        // As in segment_crossings: `from` and `end` are places across the cell of the step's far end.
-        vec4 from = vec4(y & (CELL - 1)) * (1.0 / float(CELL));
-        vec4 end = from + advance;
-        bvec4 passes_lane = greaterThan(end, vec4(1.0 + HAIR));
-        vec4 to_lane = (1.0 - from) * per_lane;
-        found = higher_where(own, is_on, found, far[1], far[2], from, vec4(back));
-        // With diagonals from (0, 0) to (1, 1), a line crosses either the diagonal inside the cell or the lane line. With
-        // diagonals from (1, 0) to (0, 1) it always crosses one; if it also crosses the lane line, the next diagonal may follow.
-        bvec4 is_lane = bvec4(uvec4(along) & uvec4(passes_lane));
-        bvec4 is_inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
-        bvec4 crosses = mix(greaterThan(end, vec4(0.0)), bvec4(uvec4(is_inside) | uvec4(passes_lane)), along);
-        crosses = bvec4(uvec4(crosses) & uvec4(mix(is_on, exists, is_lane)));
-        vec4 u = mix(mix(1.0 - from, from, along) * per_split, to_lane, is_lane);
-        vec4 far_end = mix(far[2], far[1], bvec4(uvec4(along) & uvec4(not(is_lane))));
-        found = higher_where(own, crosses, found, far_end, mix(near_low, near_high, along), u, vec4(back) - u);
-        bvec4 crosses_more = bvec4(uvec4(exists) & uvec4(passes_lane) & uvec4(not(along)));
-        found = higher_where(own, crosses_more, found, far[2], near_high, to_lane, vec4(back) - to_lane);
-        vec4 to_next = (2.0 - from) * per_split_across;
-        found = higher_where(own, crosses_more, found, far[3], near_high, to_next, vec4(back) - to_next);
-        near = far;
-        near_cell = cell;
+    // As in segment_crossings: `from` and `end` are places across the cell of the step's far end.
+    vec4 from = vec4(beside.y & (CELL - 1)) * (1.0 / float(CELL));
+    vec4 end = from + advance;
+    bvec4 passes_lane = greaterThan(end, vec4(1.0 + HAIR));
+    vec4 to_lane = (1.0 - from) * per_lane;
+    beside.found = higher_where(own, is_on, beside.found, far[1], far[2], from, vec4(back));
+    // With diagonals from (0, 0) to (1, 1), a line crosses either the diagonal inside the cell or the lane line. With
+    // diagonals from (1, 0) to (0, 1) it always crosses one; if it also crosses the lane line, the next diagonal may follow.
+    bvec4 is_lane = bvec4(uvec4(along) & uvec4(passes_lane));
+    bvec4 is_inside = bvec4(uvec4(greaterThan(from, vec4(0.0))) & uvec4(lessThan(end, vec4(1.0 - HAIR))));
+    bvec4 crosses = mix(greaterThan(end, vec4(0.0)), bvec4(uvec4(is_inside) | uvec4(passes_lane)), along);
+    crosses = bvec4(uvec4(crosses) & uvec4(mix(is_on, exists, is_lane)));
+    vec4 u = mix(mix(1.0 - from, from, along) * per_split, to_lane, is_lane);
+    vec4 far_end = mix(far[2], far[1], bvec4(uvec4(along) & uvec4(not(is_lane))));
+    beside.found = higher_where(own, crosses, beside.found, far_end, mix(near_low, near_high, along), u, vec4(back) - u);
+    bvec4 crosses_more = bvec4(uvec4(exists) & uvec4(passes_lane) & uvec4(not(along)));
+    beside.found = higher_where(own, crosses_more, beside.found, far[2], near_high, to_lane, vec4(back) - to_lane);
+    vec4 to_next = (2.0 - from) * per_split_across;
+    beside.found = higher_where(own, crosses_more, beside.found, far[3], near_high, to_next, vec4(back) - to_next);
+    beside.near = far;
+    beside.cell = cell;
+}
+
+// Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
+// proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
+// lie there. `reach` steps lie ahead. The crossings are those of look_around, for four grid points at once: change both.
+void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
+    int step = march_position(azimuth, q.march, steps);
+    ivec4 at = mix(other, nearer, greaterThan(nearer, ivec4(0)));
+    ivec4 towards = mix(ivec4(0), sign(other - at), greaterThan(other, ivec4(0)));
+    ivec4 first = max(at + min(towards, 0), 1);
+    ivec4 last = mix(ivec4(0), min(at + 1 + max(towards, 0), reach), greaterThan(at, ivec4(0)));
+    Beside beside;
+    beside.y = lane * CELL - (first - 1) * azimuth.shear;
+    beside.cell = beside.y >> CELL_SHIFT;
+    for (int k = 0; k < 4; k++) {
+        beside.near[k] = row_at(azimuth, beside.cell[k] - 1, step - first[k] + 1, lanes, steps);
     }
+    beside.near = transpose(beside.near);
+    beside.found = Met(vec4(NO_SLOPE), vec4(0.0));
+    if (READS_LANE_WINDOWS) {
+        // llvmpipe keeps what a loop changes in memory.
+        [[unroll]] for (int i = 0; i < 3; i++) {
+            step_beside(azimuth, q, first + i, last, lanes, steps, beside);
+        }
+    } else {
+        // If the loop is unrolled, RADV uses more registers: with specular, occupancy falls by a third.
+        [[dont_unroll]] for (int i = 0; i < 3; i++) {
+            step_beside(azimuth, q, first + i, last, lanes, steps, beside);
+        }
+    }
+    Met found = beside.found;
     // Where nothing is crossed there is no slope, whatever the step.
     bvec4 crosses_any = greaterThan(found.slope, vec4(LOWEST_MET));
     found.slope = mix(vec4(NO_SLOPE), found.slope * (1.0 / azimuth.step_m), crosses_any);
@@ -215,17 +218,34 @@ Around lines_around(Azimuth azimuth, Place at) {
     around.has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(at.first));
     around.has_after = wraps ? bvec4(true) : lessThan(before, ivec4(at.last));
     around.has_after = bvec4(uvec4(around.has_after) & uvec4(greaterThan(offset, ivec4(0))));
+    if (LINES_FOLLOW_LANES) {
+        // Five lines in two texels.
+        int lowest = mix(before.x, before.w, flips_lanes);
+        int texel = lowest >> 2;
+        int last_texel = (at.lines - 1) >> 2;
+        uvec4 a = lattice_at(lattice_texel(azimuth, clamp(texel, 0, last_texel) << 2, at.step));
+        uvec4 b = lattice_at(lattice_texel(azimuth, clamp(texel + 1, 0, last_texel) << 2, at.step));
+        bvec4 by_two = bvec4((lowest & 2) != 0);
+        bvec4 is_odd = bvec4((lowest & 1) != 0);
+        uvec4 even = mix(a, uvec4(a.zw, b.xy), by_two);
+        uvec2 beyond = mix(b.xy, b.zw, by_two.xy);
+        uvec4 odd = uvec4(even.yzw, beyond.x);
+        uvec4 low = mix(even, odd, is_odd);
+        uvec4 high = mix(odd, uvec4(even.zw, beyond), is_odd);
+        around.before = mix(low, low.wzyx, bvec4(flips_lanes));
+        around.after = mix(high, high.wzyx, bvec4(flips_lanes));
+        return around;
+    }
     // GLSL's clamp is undefined if the lower bound exceeds the upper.
     int first = at.first;
     int last = max(first, at.last);
-    int lowest = clamp(mix(before.x, before.w, flips_lanes), first, last);
     ivec4 before_line = wraps ? ivec4(wrapped(before.x, at.lines), wrapped(before.y, at.lines),
                                       wrapped(before.z, at.lines), wrapped(before.w, at.lines))
                               : clamp(before, first, last);
     ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(at.lines - 1)))
                              : clamp(before + 1, first, last);
-    around.before = lattice_values(azimuth, before_line, lowest, at.lines, at.step);
-    around.after = lattice_values(azimuth, after_line, lowest, at.lines, at.step);
+    around.before = lattice_values(azimuth, before_line, at.step);
+    around.after = lattice_values(azimuth, after_line, at.step);
     return around;
 }
 
@@ -263,15 +283,15 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         int last = max(first, at.last);
         int lowest = mix(line.x, line.w, flips_lanes);
         uvec4 values;
-        if (LINES_FOLLOW_LANES && LATTICE != LATTICE_SLOPES_F32) {
+        if (LINES_FOLLOW_LANES) {
             uvec4 four = four_lines(azimuth, lowest, first, last, at.lines, at.step);
             values = mix(four, four.wzyx, bvec4(flips_lanes));
         } else if (wraps) {
             line = ivec4(wrapped(line.x, at.lines), wrapped(line.y, at.lines), wrapped(line.z, at.lines), wrapped(line.w, at.lines));
-            values = lattice_values(azimuth, line, line.x, at.lines, at.step);
+            values = lattice_values(azimuth, line, at.step);
         } else {
             line = clamp(line, first, last);
-            values = lattice_values(azimuth, line, clamp(lowest, first, last), at.lines, at.step);
+            values = lattice_values(azimuth, line, at.step);
         }
         if (FUSE == FUSE_NEAREST) {
             return Met(mix(vec4(NO_SLOPE), slopes_of(values), bvec4(takes)), vec4(0.0));
@@ -302,7 +322,8 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         uvec4 other_far = mix(uvec4(0), other, greaterThan(other, uvec4(1)));
         met = higher(met, surface_at(azimuth, q, y, other_far, lanes, steps));
         // `raise_beside` also tests the step of the nearer line's occluder.
-        if (any(lessThan(met.slope, enough))) {
+        // On llvmpipe the branch saves nothing.
+        if (READS_LANE_WINDOWS || any(lessThan(met.slope, enough))) {
             raise_beside(azimuth, q, ivec4(nearer), ivec4(other), at.step, lanes, steps, met);
         }
         return met;

@@ -1,7 +1,8 @@
 // Computes: a rectangle of the heights (all, or the edited part) transposed for a march axis, four neighbouring lanes
-// per texel.
+// per texel, or four from each lane on.
 // Reads: heights (one texel per grid point).
 // Writes: lane_heights at [march position][lane / 4]; lanes past the last repeat it, or wrap where the field repeats.
+// Writes: lane_windows at [march position][lane + 3]: that lane and the three after it.
 // And the same heights to lane_buffer, after four floats that repeat the first four and before four that repeat the last.
 // One invocation is four lanes of one march position.
 #version 460
@@ -12,10 +13,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool MARCHES_ROWS = false;
 layout(constant_id = 1) const bool PERIODIC = false;
 layout(constant_id = 2) const bool WRITES_BUFFER = false;
+layout(constant_id = 3) const bool WRITES_WINDOWS = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform writeonly image2D lane_heights;
 layout(binding = 2) writeonly buffer LaneBuffer { vec4 lane_buffer[]; };
+
+layout(binding = 3, rgba32f) uniform writeonly image2D lane_windows;
 
 layout(push_constant) uniform HeightTransposePush {
     int lanes;
@@ -25,6 +29,15 @@ layout(push_constant) uniform HeightTransposePush {
     int last_col;
     int last_row;
 };
+
+float height_of(int lane, int march) {
+    if (PERIODIC) {
+        // Four lanes are before the first at most.
+        lane = (lane + 4 * lanes) % lanes;
+    }
+    lane = clamp(lane, 0, lanes - 1);
+    return texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
+}
 
 void main() {
     ivec2 first = MARCHES_ROWS ? ivec2(first_col, first_row) : ivec2(first_row, first_col);
@@ -36,10 +49,20 @@ void main() {
     }
     vec4 four;
     for (int k = 0; k < 4; k++) {
-        int lane = PERIODIC ? (4 * group + k) % lanes : min(4 * group + k, lanes - 1);
-        four[k] = texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
+        four[k] = height_of(4 * group + k, march);
     }
     imageStore(lane_heights, ivec2(group, march), four);
+    if (WRITES_WINDOWS) {
+        // The windows that end here; from the last group also those that only begin here.
+        bool is_last = 4 * group + 4 >= lanes;
+        vec4 window = vec4(0.0);
+        for (int k = -3; k < (is_last ? 7 : 4); k++) {
+            window = vec4(window.yzw, height_of(4 * group + k, march));
+            if (k >= 0 && 4 * group + k < lanes + 3) {
+                imageStore(lane_windows, ivec2(4 * group + k, march), window);
+            }
+        }
+    }
     if (WRITES_BUFFER) {
         int groups = (lanes + 3) >> 2;
         int at = march * groups + group;

@@ -12,8 +12,13 @@ float height_at(int lane, int march) {
     return mix(two.x, two.y, (lane & 1) != 0);
 }
 
-// Heights of two lanes. With READS_LANE_BUFFER they are two loads of 4 bytes instead of two texels of 16.
+// Heights of a lane and the next. With READS_LANE_WINDOWS they are one load; with READS_LANE_BUFFER they are two loads of 4 bytes instead of two texels of 16.
 vec2 two_heights_at(int lane, int next, int march, int lanes) {
+#ifdef LANE_WINDOWS
+    if (READS_LANE_WINDOWS) {
+        return imageLoad(lane_windows, ivec2(lane + 3, march)).xy;
+    }
+#endif
 #ifdef LANE_BUFFER
     if (READS_LANE_BUFFER) {
         int row = LANE_BUFFER_PAD + march * ((lanes + 3) & ~3);

@@ -15,15 +15,14 @@ int lane_position(Azimuth azimuth, int lane, int lanes) {
     return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? flipped : lane;
 }
 
-// Remainders of negative numbers are undefined in Vulkan. The selection is between names: glslang makes branches of
-// selected expressions, for which SwiftShader's compiler takes minutes and gigabytes.
+// The remainder of i by n, 0 to n - 1, for |i| up to 2^23. CPUs have no vector instruction that divides integers. The
+// quotient is off by one at most.
 int wrapped(int i, int n) {
-    bool below = i < 0;
-    int mirrored = -1 - i;
-    int whole = below ? mirrored : i;
-    int r = whole % n;
-    int from_end = n - 1 - r;
-    return below ? from_end : r;
+    int r = i - n * int(floor(float(i) / float(n)));
+    int up = r + n;
+    r = mix(r, up, r < 0);
+    int down = r - n;
+    return mix(r, down, r >= n);
 }
 
 // Whether a lane position lies on the field.

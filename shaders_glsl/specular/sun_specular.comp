@@ -81,20 +81,22 @@ Ellipse visible_part(vec3 vector, float share) {
     return Ellipse(middle, (1.0 - c) * along, sqrt((1.0 - c) * (1.0 + 1.7 * c)) * cross(middle, along));
 }
 
-// Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1, with an error of at most 2.5e-4 of the
-// lobe's peak (measured: rings_are_as_many_as_a_lobe_needs in sun_specular.rs). Each ring has a share of the solid angle that is its weight, and
+// Mean of the lobe of exponent n over the sun's disc or an ellipse within it, for irradiance 1. Over a disc its error is at most 2.5e-4 of
+// the lobe's peak; at the lobe's end 8e-4, and with n below 1 more (measured: disc_rings in tolerance.rs). Each ring has a share of the solid angle that is its weight, and
 // four times as many directions as there are rings. Where n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that.
 // At 90 degrees from the mirror direction the lobe ends, and its slope may jump. If a disc of twice the radius reaches that end,
-// there are eight rings, or two for a small disc and a finite slope. A lobe that changes little across the disc is evaluated at the
+// there are eight rings, or one for a small disc and a finite slope. A lobe that changes little across the disc is evaluated at the
 // centre only, with its second derivatives along both half axes; not if a disc of four or ten times the radius reaches that end.
 float disc_density(vec3 mirror, float n, Ellipse part) {
     n = min(n, 48.0 / max(towards.w, 1e-30));
     float wide = n * towards.w;
     float radius = sqrt(level.w * (2.0 - level.w));
     float to_middle = dot(mirror, part.middle);
-    float cos_radius = 1.0 - level.w;
-    float at_edge = to_middle * cos_radius + sqrt(max(1.0 - to_middle * to_middle, 0.0)) * radius;
-    float largest = to_middle < cos_radius ? at_edge : 1.0;
+    // Half axes of the part are at most 1.04 radii long.
+    float farthest = HAS_VECTOR ? min(1.04 * radius, 1.0) : radius;
+    float cos_farthest = sqrt(1.0 - farthest * farthest);
+    float at_edge = to_middle * cos_farthest + sqrt(max(1.0 - to_middle * to_middle, 0.0)) * farthest;
+    float largest = to_middle < cos_farthest ? at_edge : 1.0;
     if (largest <= 0.0 || n * log(max(largest, 1e-30)) < DARK_LOG) {
         return 0.0;
     }
@@ -108,7 +110,7 @@ float disc_density(vec3 mirror, float n, Ellipse part) {
         float bend = (n - 1.0) * dot(aside, aside) / max(to_middle * to_middle, 1e-12) - squared.x - squared.y;
         return full * phong_lobe(part.middle - mirror, n) * (1.0 + wide / 8.0 * bend);
     }
-    int at_end = has_finite_slope && radius < 0.01 ? 2 : 8;
+    int at_end = has_finite_slope && radius < 0.01 ? 1 : 8;
     int rings = to_end < 2.0 * radius ? at_end : wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
     float sum = 0.0;
     for (int i = 0; i < rings; i++) {

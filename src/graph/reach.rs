@@ -61,13 +61,13 @@ impl Rectangle {
     }
 
     /// With this many grid points more on every side, within a field of `cols` × `rows`.
-    fn grown(self, by: u32, [cols, rows]: [u32; 2]) -> Self {
-        let along = |first: u32, count: u32, all: u32| {
+    fn grown(self, [by_cols, by_rows]: [u32; 2], [cols, rows]: [u32; 2]) -> Self {
+        let along = |by: u32, first: u32, count: u32, all: u32| {
             let start = first.saturating_sub(by);
             (start, (first + count + by).min(all) - start)
         };
-        let (col, cols) = along(self.col, self.cols, cols);
-        let (row, rows) = along(self.row, self.rows, rows);
+        let (col, cols) = along(by_cols, self.col, self.cols, cols);
+        let (row, rows) = along(by_rows, self.row, self.rows, rows);
         Self { col, row, cols, rows }
     }
 
@@ -88,7 +88,12 @@ pub enum Reach {
     /// All its workgroups.
     Whole,
     /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
-    Quads(Axis),
+    Quads {
+        /// Of the lanes.
+        axis: Axis,
+        /// Lanes added to both sides of the rectangle.
+        margin: u32,
+    },
     /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible.
     Lines {
         /// Of the march.
@@ -109,15 +114,19 @@ impl Pass {
         let mut push = self.push.clone();
         let Some(reach) = self.reach else { return (self.groups, push) };
         let rectangle = match reach {
-            Reach::Lines { axis, margin, .. } => rectangle.grown(margin, axis.size()),
-            _ => rectangle,
+            Reach::Lines { axis, margin, .. } => rectangle.grown([margin; 2], axis.size()),
+            Reach::Quads { axis, margin } => {
+                let by = if axis.marches_rows { [margin, 0] } else { [0, margin] };
+                rectangle.grown(by, axis.size())
+            }
+            Reach::Whole => rectangle,
         };
         let at = push.len() - size_of::<[i32; 4]>();
         push[at..].copy_from_slice(bytemuck::bytes_of(&rectangle.words()));
         let [x, y, z] = self.groups;
         let groups = match reach {
             Reach::Whole => self.groups,
-            Reach::Quads(axis) => {
+            Reach::Quads { axis, .. } => {
                 let [lane, lanes, marches] = rectangle.along(axis);
                 let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
                 shaders::HEIGHT_TRANSPOSE.groups([quads, marches, z])

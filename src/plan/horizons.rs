@@ -69,7 +69,7 @@ pub fn horizons(
         let part = part("", batch, batches);
         sweeping.plan_all(&mut builder, &[(*batch, part.clone())]);
         let written = sweeping.written(batch);
-        let ids = [sweeping.lane_heights(batch), sweeping.azimuths, angles];
+        let ids = [sweeping.azimuths, angles];
         passes::sweep_fuse::plan(
             &mut builder,
             &sweeping.sweep,
@@ -77,7 +77,7 @@ pub fn horizons(
             batch,
             &part,
             ids,
-            (Some(written), distances),
+            (sweeping.lanes(batch), Some(written), distances),
         );
     }
     let used = settings(Some(&sweeping.sweep), border);

@@ -1,14 +1,14 @@
 //! Every setting, defined once. See [`Setting`] for what follows from a definition, and docs/adding/index.md for how to add one.
 
+mod suited;
+
 use super::Surface;
 use super::choices::{
     Basis, BounceEngine, BounceSpecular, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision,
     Receiver, Wedges, Window,
 };
 use super::settings::{Audience, Setting, Text, Values, settings};
-use super::{HeightField, Scene, Specular, normal};
 use crate::Result;
-use glam::DVec3;
 
 settings! {
     /// Settings that trade speed for accuracy.
@@ -179,46 +179,7 @@ pub fn setting(name: &str) -> Option<&'static Setting> {
     SETTINGS.iter().find(|setting| setting.name == name)
 }
 
-/// Default azimuths where horizons may cut lobes: (largest exponent, azimuths).
-///
-/// Measured under a uniform sky on 96² grid points of the Jacksboro fault, of Mt Washington and N44W072 three times as high, and of moss:
-/// with 32 azimuths the RMSE of the specular layer is 0.7 to 2 % at exponent 20, 1.6 to 4.4 % at 100, and 3.6 to 12 % at 1,000.
-const BY_EXPONENT: [(f32, u32); 3] = [(50.0, 64), (3000.0, 128), (f32::INFINITY, 256)];
-
-/// Largest default under an environment, where each azimuth has its own tables: for a constant exponent, and for a specular map, which
-/// needs several times the memory.
-const UNDER_ENVIRONMENT: [u32; 2] = [128, 64];
-
-/// The default has more azimuths if a horizon may cut at least this share of the lobes. On ten fields viewed from above it is 9 %
-/// or less where 32 azimuths are enough, and 22 % or more elsewhere.
-const SHARE_CUT: f64 = 0.125;
-
-/// `share_cut` reads at most this many texels along each side.
-const SAMPLED: usize = 256;
-
 impl Quality {
-    /// The defaults for a scene. With specular under a sky or an environment, steep ground gets 64 to 256 azimuths: where at least an
-    /// eighth of the texels that face the eye have a mirror direction below the mean slope. `eye_m` is
-    /// [`Picture::eye_m`](crate::plan::Picture::eye_m). If the heights are unknown, this is the same as [`default`](Self::default).
-    pub fn for_scene(scene: &Scene, eye_m: Option<[f64; 3]>) -> Self {
-        let default = Self::default();
-        let Scene { field, surface, lights } = scene;
-        let lit = lights.lit();
-        let has_light = lit.sky.is_some() || lit.environment.is_some();
-        let largest = surface.specular.as_ref().map(Specular::largest);
-        let Some(phong) = largest.filter(|phong| phong.scale > 0.0 && has_light) else {
-            return default;
-        };
-        if field.is_unknown() || share_cut(field, surface, eye_m) < SHARE_CUT {
-            return default;
-        }
-        let count = BY_EXPONENT.iter().find(|(most, _)| phong.exponent <= *most);
-        let count = count.map_or(default.azimuths, |(_, count)| *count);
-        let is_map = matches!(surface.specular, Some(Specular::Map(_)));
-        let most = lit.environment.map_or(count, |_| UNDER_ENVIRONMENT[usize::from(is_map)]);
-        Self { azimuths: count.min(most), ..default }
-    }
-
     fn own(&mut self) -> &mut Self {
         self
     }
@@ -242,33 +203,6 @@ impl Quality {
     pub fn check(&self) -> Result<()> {
         SETTINGS.iter().try_for_each(|setting| setting.check(self))
     }
-}
-
-/// Of the texels that face the eye, the share whose mirror direction is lower than the mean slope of the field.
-fn share_cut(field: &HeightField, surface: &Surface, eye_m: Option<[f64; 3]>) -> f64 {
-    let [rows, cols] = [field.rows(), field.cols()];
-    let [down, across] = [rows, cols].map(|count| count.div_ceil(SAMPLED));
-    let texels = || {
-        let along = move |row: usize| (0..cols).step_by(across).map(move |col| (row, col));
-        (0..rows).step_by(down).flat_map(along)
-    };
-    let normals = || texels().map(|(row, col)| normal(field, surface.border, row, col));
-    let count = normals().count() as f64;
-    let mean_slope_rad = normals().map(|normal| normal.z.min(1.0).acos()).sum::<f64>() / count;
-    let [cell_x, cell_y] = field.cell_m();
-    let (mut front, mut cut) = (0.0, 0.0);
-    for ((row, col), normal) in texels().zip(normals()) {
-        let height_m = f64::from(field.heights_m()[row * cols + col]) + field.base_m();
-        let place = DVec3::new(col as f64 * cell_x, (rows - 1 - row) as f64 * cell_y, height_m);
-        let view = eye_m.map_or(DVec3::Z, |eye| (DVec3::from(eye) - place).normalize_or(DVec3::Z));
-        let facing = normal.dot(view);
-        if facing > 0.0 {
-            let mirror_up = 2.0 * facing * normal.z - view.z;
-            front += 1.0;
-            cut += f64::from(u8::from(mirror_up < mean_slope_rad.sin()));
-        }
-    }
-    if front > 0.0 { cut / front } else { 0.0 }
 }
 
 impl Bounces {
@@ -297,82 +231,6 @@ impl Bounces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Border, Environment, Lights, PhongSpecular, Sun};
-
-    /// A plane that rises towards the north at this slope, with specular under a sky.
-    fn slope(degrees: f64, exponent: f32) -> Scene {
-        let rise = degrees.to_radians().tan();
-        let heights: Vec<f64> = (0..64).map(|i| 2.0 * rise * f64::from(7 - i / 8)).collect();
-        let specular = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.4 }));
-        Scene {
-            field: HeightField::new(8, 8, &heights, [2.0; 2], None).unwrap(),
-            surface: Surface { specular, border: Border::Open, ..Surface::default() },
-            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-        }
-    }
-
-    fn azimuths(scene: &Scene, eye_m: Option<[f64; 3]>) -> u32 {
-        let suited = Quality::for_scene(scene, eye_m);
-        assert_eq!(Quality { azimuths: 32, ..suited }, Quality::DEFAULT);
-        suited.azimuths
-    }
-
-    /// Viewed from above, a plane mirrors the view at 90° minus twice its slope: lower than its slope from 30° on.
-    #[test]
-    fn narrow_lobes_on_steep_ground_have_more_azimuths_by_default() {
-        assert_eq!([29.0, 31.0].map(|degrees| azimuths(&slope(degrees, 20.0), None)), [32, 64]);
-        for (exponent, wanted) in
-            [(0.0, 64), (50.0, 64), (51.0, 128), (3000.0, 128), (3001.0, 256), (1e4, 256)]
-        {
-            assert_eq!(azimuths(&slope(40.0, exponent), None), wanted, "{exponent}");
-            assert_eq!(azimuths(&slope(10.0, exponent), None), 32, "{exponent}");
-        }
-        let steep = slope(40.0, 1e3);
-        let lit = |lights: Lights| Scene { lights, ..steep.clone() };
-        let environment = Some(Environment::new(2, 4, vec![[1.0; 3]; 8], 0.0).unwrap());
-        let under_environment = Lights { environment, ..Lights::default() };
-        assert_eq!(azimuths(&lit(under_environment.clone()), None), 128);
-        let narrow = Scene { lights: under_environment.clone(), ..slope(40.0, 1e4) };
-        assert_eq!(azimuths(&narrow, None), 128);
-        let sun =
-            Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.0, irradiance: [1.0; 3] };
-        for lights in [
-            Lights::default(),
-            Lights { sky: Some([0.0; 3]), ..Lights::default() },
-            Lights { suns: vec![sun], ..Lights::default() },
-        ] {
-            assert_eq!(azimuths(&lit(lights.clone()), None), 32, "{lights:?}");
-        }
-        let with = |specular| Scene {
-            surface: Surface { specular, ..steep.surface.clone() },
-            ..steep.clone()
-        };
-        let of = |exponent, scale| PhongSpecular { exponent, scale };
-        assert_eq!(azimuths(&with(None), None), 32);
-        assert_eq!(azimuths(&with(Some(Specular::Constant(of(1e3, 0.0)))), None), 32);
-        let mut map = vec![of(5.0, 0.4); 64];
-        map[9] = of(5e3, 0.1);
-        let with_map = with(Some(Specular::Map(map)));
-        assert_eq!(azimuths(&with_map, None), 256);
-        assert_eq!(azimuths(&Scene { lights: under_environment, ..with_map }, None), 64);
-        let unknown = HeightField::unknown(8, 8, [2.0; 2]).unwrap();
-        assert_eq!(azimuths(&Scene { field: unknown, ..steep }, None), 32);
-    }
-
-    /// A plane that falls to the south at 10°. For an eye in the north at 20° elevation, the mirror direction is horizontal, to the
-    /// south. For one in the south it is 40° up, to the north. An eye in the north at 5° is behind the plane; its texels do not count.
-    #[test]
-    fn the_eye_decides_which_lobes_a_horizon_cuts() {
-        let eye = |north: f64, degrees: f64| {
-            let [across, up] = [north, 1.0].map(|sign| sign * 1e6);
-            Some([7.0, across * degrees.to_radians().cos(), up * degrees.to_radians().sin()])
-        };
-        let scene = slope(10.0, 20.0);
-        assert_eq!(azimuths(&scene, eye(1.0, 20.0)), 64);
-        assert_eq!(azimuths(&scene, eye(1.0, 50.0)), 32);
-        assert_eq!(azimuths(&scene, eye(-1.0, 20.0)), 32);
-        assert_eq!(azimuths(&scene, eye(1.0, 5.0)), 32);
-    }
 
     /// At ½, bounces 10 to 12 carry 2⁻¹⁰ + 2⁻¹¹ + 2⁻¹²; from the 9th on, 2⁻⁹ more.
     #[test]

@@ -24,7 +24,9 @@ fn a_single_texel() {
         sky_sum 1×1×1
         azimuths 256
         lane_heights_cols 1×1×1
+        lane_windows_cols 4×1×1
         lane_heights_rows 1×1×1
+        lane_windows_rows 4×1×1
         lattice_occluders 8×1×2
         ",
     );
@@ -45,7 +47,9 @@ fn one_row_and_one_column() {
         sky_sum 9×1×1
         azimuths 256
         lane_heights_cols 1×9×1
+        lane_windows_cols 4×9×1
         lane_heights_rows 3×1×1
+        lane_windows_rows 12×1×1
         lattice_occluders 8×9×2
         ",
     );
@@ -62,7 +66,9 @@ fn one_row_and_one_column() {
         sky_sum 1×9×1
         azimuths 256
         lane_heights_cols 3×1×1
+        lane_windows_cols 12×1×1
         lane_heights_rows 1×9×1
+        lane_windows_rows 4×9×1
         lattice_occluders 8×9×2
         ",
     );
@@ -83,7 +89,9 @@ fn two_by_three() {
         sky_sum 3×2×1
         azimuths 512
         lane_heights_cols 1×3×1
+        lane_windows_cols 5×3×1
         lane_heights_rows 1×2×1
+        lane_windows_rows 6×2×1
         lattice_occluders 8×3×4
         ",
     );
@@ -104,7 +112,9 @@ fn primes() {
         sky_sum 37×31×1
         azimuths 768
         lane_heights_cols 8×37×1
+        lane_windows_cols 34×37×1
         lane_heights_rows 10×31×1
+        lane_windows_rows 40×31×1
         lattice_occluders 8×37×12
         ",
     );
@@ -127,7 +137,9 @@ fn long_and_thin() {
         sky_sum 8191×3×1
         azimuths 256
         lane_heights_cols 1×8191×1
+        lane_windows_cols 6×8191×1
         lane_heights_rows 2048×3×1
+        lane_windows_rows 8194×3×1
         lattice_occluders 8×8191×2
         lost_lines 64
         lattice_occluders_across 8×3×512
@@ -149,7 +161,9 @@ fn long_and_thin() {
         sky_sum 3×8191×1
         azimuths 256
         lane_heights_cols 2048×3×1
+        lane_windows_cols 8194×3×1
         lane_heights_rows 1×8191×1
+        lane_windows_rows 6×8191×1
         lattice_occluders 8×3×512
         lost_lines 16384
         lattice_occluders_across 8×8191×2

@@ -61,6 +61,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let goal = auto::goal(args.auto.max_error, args.auto.time_budget)?;
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = args.quality.quality()?;
+    let asked_azimuths = quality.azimuths;
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.scene.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, args.camera.eye.compass_deg());
@@ -134,10 +135,13 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         None => picture(&quality, &limits)?,
     };
     let horizon = args.layers.contains(&Layer::Horizon);
+    // Azimuths chosen for specular change the light alone.
+    let azimuths = if choice.is_none() { asked_azimuths } else { quality.azimuths };
+    let of_horizons = Quality { azimuths, ..quality };
     let mut used = plan.settings.clone();
     if horizon {
         let border = setup::border(&args.scene.field);
-        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
+        used.extend(crate::horizon::used(&scene.field, border, &of_horizons, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
     let view = camera_view
@@ -174,7 +178,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         metadata.extend(camera_view.settings(view, &scene.field));
     }
     let mean_horizon =
-        if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
+        if horizon { Some(mean_horizon(&mut gpu, &scene, &of_horizons, &limits)?) } else { None };
     progress.finish_and_clear();
     let mut shown = None;
     let night = if setup::is_night(&args.scene.lights, &scene.lights) { NIGHT_SHARE } else { 1.0 };

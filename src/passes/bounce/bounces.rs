@@ -301,8 +301,7 @@ fn walk(
         let field = (scene.surface.border, scene.field.cell_m());
         if let Some(share) = shaded.filter(|_| k == 1) {
             let images = sky_shade::Images {
-                lane_heights: sweeping.lane_heights(batch),
-                lane_buffer: sweeping.lane_buffer(batch),
+                lanes: sweeping.lanes(batch),
                 lattice: sweeping.lattice(batch),
                 azimuths: sweeping.azimuths,
                 sky_sum: Some(share),

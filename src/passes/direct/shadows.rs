@@ -109,7 +109,7 @@ impl Shadows {
         batch: &Batch,
         part: &str,
     ) {
-        let lane_buffer = sweeping.lane_buffer(batch).filter(|_| self.one_line);
+        let lane_buffer = sweeping.lanes(batch).buffer.filter(|_| self.one_line);
         let heights = match lane_buffer {
             Some(buffer) => ("lane_buffer", buffer),
             None => ("lane_heights", sweeping.lane_heights(batch)),

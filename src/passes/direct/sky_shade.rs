@@ -3,13 +3,12 @@ use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
 use crate::passes::specular_tables::{MapLevels, SpecularTables};
 use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::Lanes;
 use crate::scene::Border;
 
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
-    pub lane_heights: ResourceId,
-    /// The same as a buffer, set if an invocation of some sweep along this axis sweeps one line.
-    pub lane_buffer: Option<ResourceId>,
+    pub lanes: Lanes,
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub sky_sum: Option<ResourceId>,
@@ -52,10 +51,11 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let mut bound = vec![("lane_heights", images.lane_heights), ("azimuths", images.azimuths)];
-    if let Some(buffer) = images.lane_buffer {
+    let mut bound = vec![("lane_heights", images.lanes.heights), ("azimuths", images.azimuths)];
+    if let Some(buffer) = images.lanes.buffer {
         bound.extend([("lane_buffer", buffer), ("azimuth_buffer", images.azimuths)]);
     }
+    bound.extend(images.lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
     if let Some([sum, tables]) = images.environment {
@@ -95,7 +95,8 @@ pub(crate) fn plan(
             has_environment: images.environment.is_some(),
             marches_rows: axis.marches_rows,
             has_specular: images.specular.is_some(),
-            reads_lane_buffer: images.lane_buffer.is_some(),
+            reads_lane_buffer: images.lanes.buffer.is_some(),
+            reads_lane_windows: images.lanes.windows.is_some(),
             specular_is_map: map_images.is_some(),
             specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },

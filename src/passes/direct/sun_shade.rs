@@ -4,6 +4,7 @@ use crate::passes::azimuths::Shape;
 use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
 use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::Lanes;
 use crate::scene::Border;
 
 /// Phong specular of a key light.
@@ -27,15 +28,17 @@ pub(crate) fn plan(
     cell_m: [f64; 2],
     batch: &Batch,
     part: &str,
+    lanes: Lanes,
     shape: Shape,
     lattice: Option<ResourceId>,
-    ([lane_heights, azimuths, sun_sum], light_vector): ([ResourceId; 3], Option<ResourceId>),
+    ([azimuths, sun_sum], light_vector): ([ResourceId; 2], Option<ResourceId>),
     specular: Option<KeySpecular>,
     edited: Option<[ResourceId; 2]>,
 ) {
     let axis = batch.axis;
     let mut bound =
-        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
+        vec![("lane_heights", lanes.heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
+    bound.extend(lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(light_vector.map(|vector| ("light_vector", vector)));
     let mut push = shaders::ShadePush::of(batch, cell_m);
@@ -62,6 +65,7 @@ pub(crate) fn plan(
             border: border as u32,
             shape: shape as u32,
             marches_rows: axis.marches_rows,
+            reads_lane_windows: lanes.windows.is_some(),
             has_specular: specular.is_some(),
             specular_is_map: specular.is_some_and(|s| s.phong.map.is_some()),
             has_vector: light_vector.is_some(),

@@ -1,6 +1,7 @@
 use crate::graph::{Builder, Part, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
+use crate::passes::sweeping::Lanes;
 
 /// Brute force: every crossing of every grid point's own line.
 pub(crate) fn plan(
@@ -8,13 +9,17 @@ pub(crate) fn plan(
     batch: &Batch,
     part: &str,
     (distances, nodes): (bool, Nodes),
-    [lane_heights, azimuths, slopes]: [ResourceId; 3],
+    lanes_read: Lanes,
+    [azimuths, slopes]: [ResourceId; 2],
 ) {
     let axis = batch.axis;
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     // Half the field, on average; and a repeating one's periods.
     let each = u64::from(axis.steps / 2 + axis.warm_up);
     let all = batch.azimuths();
+    let mut bound =
+        vec![("lane_heights", lanes_read.heights), ("azimuths", azimuths), ("slopes", slopes)];
+    bound.extend(lanes_read.windows.map(|w| ("lane_windows", w)));
     for cut in builder.parts(all.clone(), [lanes, steps], each, u32::MAX) {
         let Part { azimuths: few, rows } = &cut;
         let (count, height) = (few.len() as u32, rows.len() as u32);
@@ -24,6 +29,7 @@ pub(crate) fn plan(
                 periodic: axis.warm_up > 0,
                 writes_distances: distances,
                 node_stride: nodes.stride as i32,
+                reads_lane_windows: lanes_read.windows.is_some(),
             },
             &cut.label(part, "azimuths", &all, steps),
             format!("brute-force horizons of {count} azimuths along {}", axis.name()),
@@ -33,7 +39,7 @@ pub(crate) fn plan(
                 first: rows.start as i32,
                 ..shaders::MarchPush::of(batch)
             },
-            &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],
+            &bound,
             grid_points * 8,
             grid_points,
         );

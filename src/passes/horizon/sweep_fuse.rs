@@ -1,6 +1,7 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::Lanes;
 use crate::scene::Border;
 
 /// Horizons at grid points, as elevations.
@@ -10,13 +11,14 @@ pub(crate) fn plan(
     border: Border,
     batch: &Batch,
     part: &str,
-    [lane_heights, azimuths, angles]: [ResourceId; 3],
-    (lattice, distances): (Option<ResourceId>, Option<ResourceId>),
+    [azimuths, angles]: [ResourceId; 2],
+    (lanes, lattice, distances): (Lanes, Option<ResourceId>, Option<ResourceId>),
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
     let mut bound =
-        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("horizon_angles", angles)];
+        vec![("lane_heights", lanes.heights), ("azimuths", azimuths), ("horizon_angles", angles)];
+    bound.extend(lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     let pass = builder.pass(
@@ -29,6 +31,7 @@ pub(crate) fn plan(
             writes_distances: distances.is_some(),
             lattice_has_distances: sweep.lattice_has_distances(),
             marches_rows: axis.marches_rows,
+            reads_lane_windows: lanes.windows.is_some(),
         },
         part,
         "from the lines back to grid points",

@@ -8,7 +8,7 @@ use crate::passes::batch::{Batch, Group, LATTICE_DIVISOR, LatticeShape, cut_grou
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid_march;
 use crate::passes::sweep::{HullStorage, LineSweep, Sweep, shadows_by_one_line};
-use crate::scene::{Border, HeightField, Lines, Method, Quality};
+use crate::scene::{Border, Fuse, HeightField, Lines, Method, Quality};
 use crate::{Result, passes};
 
 /// What all sweeps of a plan share.
@@ -17,9 +17,7 @@ pub(crate) struct Sweeping {
     heights: ResourceId,
     pub azimuths: ResourceId,
     /// Heights by lanes, of each axis that is marched: columns, rows.
-    lane_heights: [Option<ResourceId>; 2],
-    /// The same as buffers, set where an invocation sweeps one line.
-    lane_buffers: [Option<ResourceId>; 2],
+    lanes: [Option<Lanes>; 2],
     /// Whether the sweep also reads its heights there, four lanes at a time.
     quads: bool,
     /// Levels of a height pyramid, where any are read.
@@ -36,6 +34,17 @@ pub(crate) struct Sweeping {
     shadows: Vec<u32>,
 }
 
+/// Heights by lanes along one axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes {
+    /// Four lanes per texel.
+    pub heights: ResourceId,
+    /// The same as a buffer, set if an invocation of a sweep along this axis sweeps one line.
+    pub buffer: Option<ResourceId>,
+    /// Four lanes from each lane on, set where fuse `aimed-around` or brute force reads them.
+    pub windows: Option<ResourceId>,
+}
+
 /// Floats of a buffer of heights by lanes before the first height and after the last: LANE_BUFFER_PAD of sweep.glsl.
 pub(crate) const LANE_BUFFER_PAD: u32 = 4;
 
@@ -49,13 +58,13 @@ struct Lattice {
 
 impl Sweeping {
     /// Heights by lanes along a batch's axis.
-    pub(crate) fn lane_heights(&self, batch: &Batch) -> ResourceId {
-        self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
+    pub(crate) fn lanes(&self, batch: &Batch) -> Lanes {
+        self.lanes[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
-    /// The same as a buffer, set if an invocation of a sweep along this axis sweeps one line.
-    pub(crate) fn lane_buffer(&self, batch: &Batch) -> Option<ResourceId> {
-        self.lane_buffers[usize::from(batch.axis.marches_rows)]
+    /// The same, four lanes per texel.
+    pub(crate) fn lane_heights(&self, batch: &Batch) -> ResourceId {
+        self.lanes(batch).heights
     }
 
     fn lattice_of(&self, batch: &Batch) -> Lattice {
@@ -96,11 +105,10 @@ impl Sweeping {
         batches: impl Iterator<Item = &'a Batch> + Clone,
         [dirty, list]: [ResourceId; 2],
     ) {
-        for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
+        for (marches_rows, lanes) in [false, true].into_iter().zip(self.lanes) {
             let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
             if let (Some(axis), Some(lanes)) = (axis, lanes) {
-                let buffer = self.lane_buffers[usize::from(marches_rows)];
-                passes::height_transpose::plan(builder, axis, border, self.heights, lanes, buffer);
+                passes::height_transpose::plan(builder, axis, border, self.heights, lanes);
             }
         }
         let Some(sweep) = self.sweep.editable(border) else { return };
@@ -134,7 +142,7 @@ impl Sweeping {
         passes::horizon_sweep::Images {
             heights: self.heights,
             lane_heights: self.quads.then(|| self.lane_heights(batch)),
-            lane_buffer: self.lane_buffer(batch),
+            lane_buffer: self.lanes(batch).buffer,
             azimuths: self.azimuths,
             occluders: lattice.occluders,
             slopes: lattice.slopes,
@@ -159,9 +167,9 @@ impl Sweeping {
                 passes::surface_sweep::plan(builder, batch, part, hull, *distances, ids);
             }
             Sweep::March { distances } => {
-                let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
+                let (lanes, ids) = (self.lanes(batch), [self.azimuths, self.written(batch)]);
                 let wanted = (*distances, self.nodes);
-                passes::horizon_march::plan(builder, batch, part, wanted, ids);
+                passes::horizon_march::plan(builder, batch, part, wanted, lanes, ids);
             }
         }
     }
@@ -214,19 +222,30 @@ pub(crate) fn prepare(
         let used = lists.iter().flatten().any(|a| a.marches_rows() == marches_rows);
         used.then(|| Axis::of(marches_rows, size, border))
     });
-    let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
     // One line per invocation reads heights from a buffer.
     let lines_alone = matches!(&sweep, Sweep::Lines(l) if l.lines_each == 1);
-    let lane_buffers = axes.map(|axis| {
+    let has_windows = reads_windows(&sweep, axes, limits);
+    let lanes = axes.map(|axis| {
+        let axis = axis?;
         let shadows_alone = shadows_by_one_line(size, limits);
         let reads = |l: usize| if shadows.contains(&l) { shadows_alone } else { lines_alone };
-        let along = |a: &Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
-        let is_read = lists.iter().enumerate().any(|(l, list)| reads(l) && list.iter().any(along));
-        axis.filter(|_| is_read).map(|axis| {
+        let along = |a: &Azimuth| a.marches_rows() == axis.marches_rows;
+        let is_along = |(_, list): &(usize, &Vec<Azimuth>)| list.iter().any(along);
+        let of_axis = || lists.iter().enumerate().filter(is_along);
+        let [heights, windows] = [("heights", axis.lanes.div_ceil(4)), ("windows", axis.lanes + 3)]
+            .map(|(name, width)| (format!("lane_{name}_{}", axis.name()), [width, axis.steps, 1]));
+        let mut image = |(name, extent)| {
+            builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
+        };
+        let heights = image(heights);
+        let is_fused = has_windows && of_axis().any(|(l, _)| !shadows.contains(&l));
+        let windows = is_fused.then(|| image(windows));
+        let buffer = of_axis().any(|(l, _)| reads(l)).then(|| {
             let texels = u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
             let bytes = 4 * (texels + 2 * u64::from(LANE_BUFFER_PAD));
             builder.buffer(&format!("lane_buffer_{}", axis.name()), bytes, false)
-        })
+        });
+        Some(Lanes { heights, buffer, windows })
     });
     let levels = match &sweep {
         Sweep::Pyramid(pyramid) => pyramid.images(builder),
@@ -309,11 +328,8 @@ pub(crate) fn prepare(
             lattices.push(made);
         }
     }
-    for (i, axis) in axes.iter().enumerate() {
-        if let (Some(axis), Some(lanes)) = (axis, lane_heights[i]) {
-            let buffer = lane_buffers[i];
-            passes::height_transpose::plan(builder, *axis, border, heights, lanes, buffer);
-        }
+    for (axis, lanes) in axes.into_iter().zip(lanes).filter_map(|(a, l)| a.zip(l)) {
+        passes::height_transpose::plan(builder, axis, border, heights, lanes);
     }
     let of_shadows = shadows.iter().flat_map(|l| batches[*l].iter().map(|b| b.number)).collect();
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
@@ -326,8 +342,7 @@ pub(crate) fn prepare(
         sweep,
         heights,
         azimuths,
-        lane_heights,
-        lane_buffers,
+        lanes,
         quads,
         levels,
         hull_buffer,
@@ -339,11 +354,23 @@ pub(crate) fn prepare(
     Ok((sweeping, Lists { lists, batches }))
 }
 
-/// The image of heights by lanes along an axis.
-fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
-    let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
-    let name = format!("lane_heights_{}", axis.name());
-    builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
+/// Windows on heights by lanes may take this part of the memory budget.
+const WINDOWS_DIVISOR: u64 = 16;
+
+/// Whether passes read windows of four lanes, in half as many loads. They take four times the memory of heights. Not where sweeps
+/// read buffers of heights, as on GPUs: those are read from any lane on.
+fn reads_windows(sweep: &Sweep, axes: [Option<Axis>; 2], limits: &Limits) -> bool {
+    let reads = match sweep {
+        Sweep::Lines(lines) => lines.fuse == Fuse::AimedAround && lines.lines_each == 4,
+        Sweep::March { .. } => true,
+        _ => false,
+    };
+    let texels = |axis: Axis| u64::from(axis.lanes + 3) * u64::from(axis.steps);
+    let bytes: u64 = axes.into_iter().flatten().map(|axis| 16 * texels(axis)).sum();
+    reads
+        && limits.is_cpu
+        && axes.into_iter().flatten().all(|axis| axis.lanes + 3 <= limits.image_side)
+        && bytes <= limits.memory_budget / WINDOWS_DIVISOR
 }
 
 /// The part in a pass's label for one of the batches of a light.

@@ -3,11 +3,12 @@ use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::sh_layout::Sh;
 use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::Lanes;
 use crate::scene::{Border, Wedges};
 
 /// How a batch's wedges become SH.
 pub(crate) struct Images {
-    pub lane_heights: ResourceId,
+    pub lanes: Lanes,
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub visibility: ResourceId,
@@ -26,10 +27,11 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let mut bound = vec![
-        ("lane_heights", images.lane_heights),
+        ("lane_heights", images.lanes.heights),
         ("azimuths", images.azimuths),
         ("visibility", images.visibility),
     ];
+    bound.extend(images.lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.nodes.map(|n| ("nodes", n)));
     let [lanes, steps] = sh.nodes.size([axis.lanes, axis.steps]);
@@ -48,6 +50,7 @@ pub(crate) fn plan(
             own_plane_hides: sh.own_plane_hides,
             lane_stride: sh.nodes.stride as i32,
             lattice_stride: lattice_of.stride as i32,
+            reads_lane_windows: images.lanes.windows.is_some(),
         },
         part,
         match wedges {

@@ -116,7 +116,7 @@ impl Drawing<'_> {
             if self.edited.is_none() && !sweeping.has_own_lattices {
                 sweeping.plan_all(builder, &first[i..=i]);
             }
-            let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
+            let lattice = sweeping.lattice(batch);
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
             let specular = self.slices.as_ref().map(|slices| passes::sky_shade::Specular {
                 tables: slices.first_swept().0,
@@ -126,8 +126,7 @@ impl Drawing<'_> {
             });
             if sky_sum.is_some() || self.tables.is_some() {
                 let images = passes::sky_shade::Images {
-                    lane_heights,
-                    lane_buffer: sweeping.lane_buffer(batch),
+                    lanes: sweeping.lanes(batch),
                     lattice,
                     azimuths,
                     sky_sum,
@@ -140,14 +139,14 @@ impl Drawing<'_> {
             if let Some(harmonics) = &self.harmonics {
                 let Harmonics { wedges, visibility, nodes, wedge_table, .. } = harmonics;
                 if let Some((angles, _)) = wedge_table {
-                    let ids = [lane_heights, azimuths, *angles];
-                    let read = (lattice, None);
+                    let ids = [azimuths, *angles];
+                    let read = (sweeping.lanes(batch), lattice, None);
                     passes::sweep_fuse::plan(builder, sweep, border, batch, &part, ids, read);
                     continue;
                 }
                 let (visibility, nodes) = (*visibility, *nodes);
                 let images = passes::sh_visibility::Images {
-                    lane_heights,
+                    lanes: sweeping.lanes(batch),
                     lattice,
                     azimuths,
                     visibility,
@@ -223,12 +222,12 @@ impl Drawing<'_> {
                 let specular = self.key_specular(i);
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
-                let lanes = sweeping.lane_heights(batch);
+                let lanes = sweeping.lanes(batch);
                 if let Some(shadows) = self.shadows.as_ref().filter(|_| sweeping.is_shadow(batch)) {
                     shadows.plan_sweep(builder, sweeping, batch, &part);
                     let field = &self.scene.field;
                     let of = (part.as_str(), shape);
-                    let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
+                    let ids = [lanes.heights, sweeping.azimuths, sweeping.written(batch), sum];
                     let ids = (ids, light_vector);
                     passes::shadow_shade::plan(builder, shadows, (border, cell_m), batch, of, ids);
                     let lit = (field, border);
@@ -243,12 +242,12 @@ impl Drawing<'_> {
                 if self.edited.is_none() {
                     sweeping.plan_all(builder, &[(*batch, part.clone())]);
                 }
-                let ids = ([lanes, sweeping.azimuths, sum], light_vector);
+                let ids = ([sweeping.azimuths, sum], light_vector);
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
-                    resolves,
+                    builder, sweep, border, cell_m, batch, &part, lanes, shape, lattice, ids,
+                    specular, resolves,
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);

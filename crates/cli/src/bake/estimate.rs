@@ -134,6 +134,8 @@ fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<
     let part = |count: u32, part: u32, least: u32| count.div_ceil(part).max(least).min(count);
     let azimuths = part(job.quality.azimuths, AZIMUTHS_PART, 4);
     let quality = Quality { azimuths, ..*job.quality };
+    let azimuths = part(job.specular_quality.azimuths, AZIMUTHS_PART, 4);
+    let specular_quality = Quality { azimuths, ..job.specular_quality };
     // An odd number of directions would have a horizontal one. Curved ellipses take the same time with fewer.
     let directions = match job.curvature {
         None => part(job.around.count() as u32, PART as u32, 4).next_multiple_of(2),
@@ -144,6 +146,7 @@ fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<
     let mut small = Job {
         scene: &piece,
         quality: &quality,
+        specular_quality,
         scatter,
         around: &around,
         angles: fewer(job),

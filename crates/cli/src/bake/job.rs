@@ -284,6 +284,11 @@ impl<'a> Job<'a> {
             let diffuse = (!has_scatter).then(|| kinds::diffuse(self));
             let scene = diffuse.as_ref().unwrap_or(self.scene);
             let direct = kinds::direct_plan(self, scene, limits)?.settings;
+            // Specular may need more azimuths than horizons.
+            let azimuths = direct.iter().find(|(name, _)| name == "azimuths");
+            let differing =
+                azimuths.filter(|own| used.iter().any(|o| o.0 == own.0 && o.1 != own.1));
+            used.extend(differing.map(|(_, count)| ("direct_azimuths".to_owned(), count.clone())));
             let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
             let more: Vec<_> = direct.into_iter().filter(is_new).collect();
             used.extend(more);

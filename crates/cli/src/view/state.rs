@@ -110,6 +110,10 @@ impl State {
         let has_clear_sky = scene.lights.environment.is_some() && args.scene.lights.env.is_none();
         let white = white(&scene.field, setup::tint_of(&args.scene));
         let starts_at_night = setup::is_night(&args.scene.lights, &scene.lights);
+        let mut default = Quality::default();
+        if !args.quality.gives("azimuths") {
+            default.azimuths = quality.azimuths;
+        }
         let mut state = Self {
             scene,
             white,
@@ -123,7 +127,7 @@ impl State {
             has_clear_sky,
             viewpoint: Viewpoint::default(),
             text: Text::Keys,
-            settings: Settings::new(),
+            settings: Settings::new(default),
             tool: Tool::Look,
             brush: Brush { radius_m: 0.0, strength: 0.1 },
             strokes: Strokes::default(),
@@ -227,6 +231,7 @@ impl State {
     ) -> Request {
         let mut asked = self.asked.clone();
         self.write_lights(&mut asked);
+        self.settings.write_default(&mut asked);
         if let Some(heights) = heights {
             let field = &self.scene.field;
             let [x, y] = field.cell_m();

@@ -83,10 +83,14 @@ pub fn diffuse(job: &Job) -> Scene {
     Scene { surface, ..job.scene.clone() }
 }
 
+/// Settings of direct light.
+pub fn direct_quality<'a>(job: &'a Job, scene: &Scene) -> &'a Quality {
+    if scene.surface.specular.is_some() { &job.specular_quality } else { job.quality }
+}
+
 /// Direct light of all texels; specular towards straight above.
 pub fn direct_plan(job: &Job, scene: &Scene, limits: &Limits) -> Result<Plan> {
-    let quality =
-        if scene.surface.specular.is_some() { &job.specular_quality } else { job.quality };
+    let quality = direct_quality(job, scene);
     let bounces = Bounces { count: 0, ..quality.bounces };
     let quality = Quality { bounces, ..*quality };
     let still = Picture { still: true, ..Picture::default() };

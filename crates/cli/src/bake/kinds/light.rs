@@ -79,7 +79,8 @@ fn scatter_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
 }
 
 fn direct_stage(job: &Job) -> Stage {
-    let work = job.grid_points() as f64 * f64::from(job.quality.azimuths);
+    let azimuths = far_field::direct_quality(job, job.scene).azimuths;
+    let work = job.grid_points() as f64 * f64::from(azimuths);
     Stage::new(stage::DIRECT, work, "texels x azimuths")
 }
 

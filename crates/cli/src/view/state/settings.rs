@@ -8,12 +8,14 @@ use crate::setup;
 /// The setting that keys change; the panel chooses what it changes.
 pub struct Settings {
     chosen: usize,
+    /// Values of the settings that the user does not give.
+    default: Quality,
 }
 
 impl Settings {
-    pub fn new() -> Self {
+    pub fn new(default: Quality) -> Self {
         let chosen = SETTINGS.iter().position(|setting| setting.name == "azimuths").unwrap_or(0);
-        Self { chosen }
+        Self { chosen, default }
     }
 
     /// Moves to another.
@@ -30,7 +32,7 @@ impl Settings {
     /// All with their values, and whether each is the chosen one.
     pub fn list(&self, asked: &Request) -> impl Iterator<Item = (&'static Setting, String, bool)> {
         let all = SETTINGS.iter().enumerate();
-        all.map(move |(n, setting)| (setting, word(setting, asked), n == self.chosen))
+        all.map(move |(n, setting)| (setting, self.word(setting, asked), n == self.chosen))
     }
 
     /// Gives a setting its next or previous value.
@@ -39,7 +41,7 @@ impl Settings {
     /// The command line's error.
     pub fn turn(&self, name: &str, ahead: bool, asked: &mut Request) -> Result<Quality, String> {
         let setting = setting(name).ok_or_else(|| format!("no setting {name}"))?;
-        valued(name, next(setting, &word(setting, asked), ahead), asked)
+        self.valued(name, next(setting, &self.word(setting, asked), ahead), asked)
     }
 
     /// Gives a setting a value, and chooses it.
@@ -54,25 +56,33 @@ impl Settings {
     ) -> Result<Quality, String> {
         let at = SETTINGS.iter().position(|setting| setting.name == name);
         self.chosen = at.ok_or_else(|| format!("no setting {name}"))?;
-        valued(name, value, asked)
+        self.valued(name, value, asked)
     }
-}
 
-fn valued(name: &str, value: String, asked: &mut Request) -> Result<Quality, String> {
-    let mut wanted = asked.clone();
-    wanted.set(name, vec![value]);
-    let mut quality = Quality::default();
-    for setting in SETTINGS {
-        let set = setting.set(&mut quality, &word(setting, &wanted));
-        set.map_err(|error| setup::in_flags(error).to_string())?;
+    fn valued(&self, name: &str, value: String, asked: &mut Request) -> Result<Quality, String> {
+        let mut wanted = asked.clone();
+        wanted.set(name, vec![value]);
+        let mut quality = Quality::default();
+        for setting in SETTINGS {
+            let set = setting.set(&mut quality, &self.word(setting, &wanted));
+            set.map_err(|error| setup::in_flags(error).to_string())?;
+        }
+        *asked = wanted;
+        Ok(quality)
     }
-    *asked = wanted;
-    Ok(quality)
-}
 
-/// A setting's value: the user's, or the default.
-fn word(setting: &Setting, asked: &Request) -> String {
-    asked.first(setting.name).map_or_else(|| setting.get(&Quality::default()), str::to_owned)
+    /// A setting's value: the user's, or the default.
+    fn word(&self, setting: &Setting, asked: &Request) -> String {
+        asked.first(setting.name).map_or_else(|| setting.get(&self.default), str::to_owned)
+    }
+
+    /// Adds the defaults that depend on the scene.
+    pub fn write_default(&self, asked: &mut Request) {
+        let count = self.default.azimuths;
+        if count != Quality::default().azimuths && asked.first("azimuths").is_none() {
+            asked.set("azimuths", vec![count.to_string()]);
+        }
+    }
 }
 
 /// The value after, or before. Long ranges go in factors of two.
@@ -110,7 +120,7 @@ mod tests {
     /// with its flag's name.
     #[test]
     fn every_setting_changes() {
-        let settings = Settings::new();
+        let settings = Settings::new(Quality::default());
         for setting in SETTINGS {
             for ahead in [true, false] {
                 let mut asked = Request::default();
@@ -124,9 +134,23 @@ mod tests {
         }
     }
 
+    /// Azimuths chosen for the scene stay when another setting changes, and are written into the command line.
+    #[test]
+    fn the_scenes_azimuths_stay() {
+        let settings = Settings::new(Quality { azimuths: 128, ..Quality::default() });
+        let mut asked = Request::default();
+        assert_eq!(settings.turn("lines", true, &mut asked).map(|q| q.azimuths), Ok(128));
+        let mut written = asked.clone();
+        settings.write_default(&mut written);
+        assert_eq!(written.first("azimuths"), Some("128"));
+        assert_eq!(settings.turn("azimuths", true, &mut asked).map(|q| q.azimuths), Ok(256));
+        settings.write_default(&mut asked);
+        assert_eq!(asked.first("azimuths"), Some("256"));
+    }
+
     #[test]
     fn words_go_round_numbers_go_to_their_ends() {
-        let (settings, mut asked) = (Settings::new(), Request::default());
+        let (settings, mut asked) = (Settings::new(Quality::default()), Request::default());
         let mut visited = Vec::new();
         for _ in 0..4 {
             assert!(settings.turn("method", true, &mut asked).is_ok());
