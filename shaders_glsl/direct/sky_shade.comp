@@ -1,6 +1,6 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches; and the light that the horizons hide from a Phong lobe.
-// Reads: lane_heights, lane_windows, lane_buffer, azimuths, lattice, env_tables, specular_tables, phong_map, constants, dirty_texels,
+// Reads: lane_heights, lane_buffer, azimuths, lattice, env_tables, specular_tables, phong_map, constants, dirty_texels,
 // edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
 // RGB), blocked_sum (radiance for scale 1, RGB), blocked_above (of a map: for the level of exponents above).
@@ -33,10 +33,10 @@ layout(constant_id = 9) const bool READS_LANE_BUFFER = false;
 layout(constant_id = 10) const bool SPECULAR_IS_MAP = false;
 
 #define LANE_WINDOWS
+// The image bound as lane_heights is lane_windows.
 layout(constant_id = 11) const bool READS_LANE_WINDOWS = false;
 
 layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
-layout(binding = 16, rgba32f) uniform restrict readonly image2D lane_windows;
 layout(binding = 11) readonly buffer LaneBuffer { float lane_buffer[]; };
 layout(binding = 12) readonly buffer AzimuthBuffer { vec4 azimuth_buffer[]; };
 // LATTICE selects one of these.

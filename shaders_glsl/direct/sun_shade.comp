@@ -1,6 +1,6 @@
 // Computes: direct light of a sun or a key light from the horizons in the azimuths that it covers, added to earlier
 // batches; and the Phong specular of a key light.
-// Reads: lane_heights, lane_windows, azimuths, lattice, phong_map, dirty_texels, edit_list.
+// Reads: lane_heights, azimuths, lattice, phong_map, dirty_texels, edit_list.
 // Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light),
 // light_vector (see sun_light.glsl), specular_sum (exit radiance, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
@@ -29,10 +29,10 @@ layout(constant_id = 7) const bool SPECULAR_IS_MAP = false;
 layout(constant_id = 8) const bool HAS_VECTOR = false;
 
 #define LANE_WINDOWS
+// The image bound as lane_heights is lane_windows.
 layout(constant_id = 9) const bool READS_LANE_WINDOWS = false;
 
 layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
-layout(binding = 10, rgba32f) uniform restrict readonly image2D lane_windows;
 // LATTICE selects one of these.
 layout(binding = 1, rgba16ui) uniform restrict readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;

@@ -14,7 +14,7 @@ vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
 #ifdef LANE_WINDOWS
     if (READS_LANE_WINDOWS) {
         first = BORDER == BORDER_PERIODIC ? wrapped(first, lanes) : clamp(first, -3, lanes - 1);
-        row = imageLoad(lane_windows, ivec2(first + 3, march));
+        row = imageLoad(lane_heights, ivec2(first + 3, march));
         return mix(row, row.wzyx, bvec4(flips));
     }
 #endif

@@ -5,7 +5,7 @@
 #include "horizon/crossings.glsl"
 
 // Resamples the lattice of a sweep at the field's grid points, four at a time. The including shader declares
-// `lane_heights`, `lane_windows`, `lattice`, `lattice_words` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES,
+// `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES,
 // LATTICE_STRIDE, LINE_SHIFT, BORDER, MARCHES_ROWS, LANE_STRIDE and READS_LANE_WINDOWS.
 //
 // `mix` selects between two expressions, here and in included files. `c ? a + b : a - b` is a branch, and

@@ -30,12 +30,9 @@ layout(push_constant) uniform HeightTransposePush {
     int last_row;
 };
 
+// Of a lane from 0 on.
 float height_of(int lane, int march) {
-    if (PERIODIC) {
-        // Four lanes are before the first at most.
-        lane = (lane + 4 * lanes) % lanes;
-    }
-    lane = clamp(lane, 0, lanes - 1);
+    lane = PERIODIC ? lane % lanes : min(lane, lanes - 1);
     return texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
 }
 
@@ -57,7 +54,9 @@ void main() {
         bool is_last = 4 * group + 4 >= lanes;
         vec4 window = vec4(0.0);
         for (int k = -3; k < (is_last ? 7 : 4); k++) {
-            window = vec4(window.yzw, height_of(4 * group + k, march));
+            int lane = 4 * group + k;
+            lane = PERIODIC ? lane + 3 * lanes : max(lane, 0);
+            window = vec4(window.yzw, height_of(lane, march));
             if (k >= 0 && 4 * group + k < lanes + 3) {
                 imageStore(lane_windows, ivec2(4 * group + k, march), window);
             }

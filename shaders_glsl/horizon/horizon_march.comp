@@ -1,6 +1,6 @@
 // Computes: horizons by testing every crossing of a grid point's own line with grid lines and diagonals: the baseline
 // of every speed-up, and the ground truth on the device. Cost grows with the side of the field.
-// Reads: lane_heights, lane_windows, azimuths.
+// Reads: lane_heights, azimuths.
 // Writes: slopes (f32 bits) at [layer][step][lane] and, if requested, the march steps to the horizon (f32 bits) in
 // the next layer; nodes at their own texels.
 // One invocation is one grid point, or node, in one azimuth.
@@ -14,10 +14,10 @@ layout(constant_id = 1) const bool WRITES_DISTANCES = false;
 layout(constant_id = 2) const int NODE_STRIDE = 1;
 
 #define LANE_WINDOWS
+// The image bound as lane_heights is lane_windows.
 layout(constant_id = 3) const bool READS_LANE_WINDOWS = false;
 
 layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
-layout(binding = 3, rgba32f) uniform restrict readonly image2D lane_windows;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, r32ui) uniform writeonly uimage2DArray slopes;
 

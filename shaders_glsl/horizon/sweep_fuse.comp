@@ -1,5 +1,5 @@
 // Computes: the horizon of every grid point in the azimuths of a batch, from the lattice of a sweep.
-// Reads: lane_heights, lane_windows, azimuths, lattice.
+// Reads: lane_heights, azimuths, lattice.
 // Writes: horizon_angles (elevation, radians), horizon_distances (world length to the horizon, 0 for none), at
 // [azimuth][row][column].
 // One invocation is four grid points side by side along the lane axis, at one march position, in one azimuth.
@@ -20,10 +20,10 @@ const int LANE_STRIDE = 1;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
 #define LANE_WINDOWS
+// The image bound as lane_heights is lane_windows.
 layout(constant_id = 7) const bool READS_LANE_WINDOWS = false;
 
 layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
-layout(binding = 5, rgba32f) uniform restrict readonly image2D lane_windows;
 // LATTICE selects one of these.
 layout(binding = 1, rgba16ui) uniform restrict readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;

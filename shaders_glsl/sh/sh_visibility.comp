@@ -1,6 +1,6 @@
 // Computes: visibility of every grid point, or of every node, above its horizons in the azimuths of a batch, as a
 // series of spherical harmonics, added to earlier batches.
-// Reads: lane_heights, lane_windows, azimuths, lattice.
+// Reads: lane_heights, azimuths, lattice.
 // Reads and writes: visibility, four coefficients per layer.
 // Writes: nodes (height, slopes towards east and north), where not every grid point is one.
 // One invocation is four grid points or nodes side by side along the lane axis, at one march position.
@@ -26,10 +26,10 @@ layout(constant_id = 8) const int LANE_STRIDE = 1;
 layout(constant_id = 9) const int LATTICE_STRIDE = 1;
 
 #define LANE_WINDOWS
+// The image bound as lane_heights is lane_windows.
 layout(constant_id = 10) const bool READS_LANE_WINDOWS = false;
 
 layout(binding = 0, rgba32f) uniform restrict readonly image2D lane_heights;
-layout(binding = 5, rgba32f) uniform restrict readonly image2D lane_windows;
 // LATTICE selects one of these.
 layout(binding = 1, rgba16ui) uniform restrict readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;

@@ -7,16 +7,22 @@
 // Heights are loaded four lanes at a time, as an image rather than a texture: llvmpipe (Mesa 22.3)
 // calls a function to fetch from a texture, but loads from an image in place.
 float height_at(int lane, int march) {
+#ifdef LANE_WINDOWS
+    if (READS_LANE_WINDOWS) {
+        return imageLoad(lane_heights, ivec2(lane + 3, march)).x;
+    }
+#endif
     vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
     vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
     return mix(two.x, two.y, (lane & 1) != 0);
 }
 
-// Heights of a lane and the next. With READS_LANE_WINDOWS they are one load; with READS_LANE_BUFFER they are two loads of 4 bytes instead of two texels of 16.
+// Heights of a lane and the next. With READS_LANE_WINDOWS they are one load; with READS_LANE_BUFFER they are two loads of 4 bytes
+// instead of two texels of 16.
 vec2 two_heights_at(int lane, int next, int march, int lanes) {
 #ifdef LANE_WINDOWS
     if (READS_LANE_WINDOWS) {
-        return imageLoad(lane_windows, ivec2(lane + 3, march)).xy;
+        return imageLoad(lane_heights, ivec2(lane + 3, march)).xy;
     }
 #endif
 #ifdef LANE_BUFFER
@@ -39,7 +45,11 @@ Strip strip_at(int lane, int march, int lanes) {
         }
         return s;
     }
-    s.four = imageLoad(lane_heights, ivec2(lane >> 2, march));
+    int texel = lane >> 2;
+#ifdef LANE_WINDOWS
+    texel = READS_LANE_WINDOWS ? lane + 3 : texel;
+#endif
+    s.four = imageLoad(lane_heights, ivec2(texel, march));
     s.below = vec4(height_at(neighbour(lane - 1, lanes), march), s.four.xyz);
     s.above = vec4(s.four.yzw, height_at(neighbour(lane + 4, lanes), march));
     return s;

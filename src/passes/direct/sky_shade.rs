@@ -51,11 +51,10 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let mut bound = vec![("lane_heights", images.lanes.heights), ("azimuths", images.azimuths)];
+    let mut bound = vec![("lane_heights", images.lanes.read()), ("azimuths", images.azimuths)];
     if let Some(buffer) = images.lanes.buffer {
         bound.extend([("lane_buffer", buffer), ("azimuth_buffer", images.azimuths)]);
     }
-    bound.extend(images.lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
     if let Some([sum, tables]) = images.environment {

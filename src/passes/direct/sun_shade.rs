@@ -37,8 +37,7 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let mut bound =
-        vec![("lane_heights", lanes.heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
-    bound.extend(lanes.windows.map(|w| ("lane_windows", w)));
+        vec![("lane_heights", lanes.read()), ("azimuths", azimuths), ("sun_sum", sun_sum)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(light_vector.map(|vector| ("light_vector", vector)));
     let mut push = shaders::ShadePush::of(batch, cell_m);

@@ -17,9 +17,8 @@ pub(crate) fn plan(
     // Half the field, on average; and a repeating one's periods.
     let each = u64::from(axis.steps / 2 + axis.warm_up);
     let all = batch.azimuths();
-    let mut bound =
-        vec![("lane_heights", lanes_read.heights), ("azimuths", azimuths), ("slopes", slopes)];
-    bound.extend(lanes_read.windows.map(|w| ("lane_windows", w)));
+    let bound =
+        vec![("lane_heights", lanes_read.read()), ("azimuths", azimuths), ("slopes", slopes)];
     for cut in builder.parts(all.clone(), [lanes, steps], each, u32::MAX) {
         let Part { azimuths: few, rows } = &cut;
         let (count, height) = (few.len() as u32, rows.len() as u32);

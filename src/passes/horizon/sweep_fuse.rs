@@ -17,8 +17,7 @@ pub(crate) fn plan(
     let axis = batch.axis;
     let [cols, rows] = axis.size();
     let mut bound =
-        vec![("lane_heights", lanes.heights), ("azimuths", azimuths), ("horizon_angles", angles)];
-    bound.extend(lanes.windows.map(|w| ("lane_windows", w)));
+        vec![("lane_heights", lanes.read()), ("azimuths", azimuths), ("horizon_angles", angles)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     let pass = builder.pass(

@@ -45,6 +45,13 @@ pub(crate) struct Lanes {
     pub windows: Option<ResourceId>,
 }
 
+impl Lanes {
+    /// What shaders with READS_LANE_WINDOWS read as `lane_heights`.
+    pub(crate) fn read(&self) -> ResourceId {
+        self.windows.unwrap_or(self.heights)
+    }
+}
+
 /// Floats of a buffer of heights by lanes before the first height and after the last: LANE_BUFFER_PAD of sweep.glsl.
 pub(crate) const LANE_BUFFER_PAD: u32 = 4;
 

@@ -27,11 +27,10 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let mut bound = vec![
-        ("lane_heights", images.lanes.heights),
+        ("lane_heights", images.lanes.read()),
         ("azimuths", images.azimuths),
         ("visibility", images.visibility),
     ];
-    bound.extend(images.lanes.windows.map(|w| ("lane_windows", w)));
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.nodes.map(|n| ("nodes", n)));
     let [lanes, steps] = sh.nodes.size([axis.lanes, axis.steps]);
