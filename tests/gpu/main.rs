@@ -65,6 +65,7 @@ mod horizon {
     mod hull_storage;
     mod pyramid;
     mod terrain;
+    mod windows;
 }
 #[path = "../common/brute_force_paths.rs"]
 mod brute_force_paths;

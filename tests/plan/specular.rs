@@ -3,7 +3,7 @@
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, Lights,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, HeightField, Lights,
     PhongSpecular, Quality, Scene, Specular, Surface,
 };
 
@@ -208,5 +208,34 @@ fn tables_of_a_map_take_the_stated_memory() {
         let found = bytes(&plan, &tables) as f64 / 1_048_576.0;
         // Rounded to the last digit.
         assert!((found - mebibytes).abs() <= 0.5 * last_digit, "{exponent} {border:?}: {found}");
+    }
+}
+
+/// The tables of the default azimuths under an environment. Border open has the largest.
+#[test]
+fn default_tables_take_a_gibibyte_at_most() {
+    let steep = |r: usize| 2.0 * 40_f64.to_radians().tan() * (7 - r) as f64;
+    let of = |exponent| PhongSpecular { exponent, scale: 0.4 };
+    let environment = Environment::new(8, 4, vec![[1.0; 3]; 32], 0.0).expect("an environment");
+    for (specular, azimuths) in [
+        (Specular::Constant(of(3e3)), 128),
+        (Specular::Constant(of(1e4)), 128),
+        (Specular::Map(vec![of(1e3); 64]), 64),
+        (Specular::Map(vec![of(1e4); 64]), 32),
+    ] {
+        let mut scene = grey();
+        let heights: Vec<f64> = (0..64).map(|i| steep(i / 8)).collect();
+        scene.field = HeightField::new(8, 8, &heights, [2.0; 2], None).expect("a field");
+        scene.surface.border = Border::Open;
+        scene.surface.specular = Some(specular.clone());
+        scene.lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
+        let quality = Quality::for_scene(&scene, None);
+        assert_eq!(quality.azimuths, azimuths);
+        let limits = Limits::boundless(true, 1 << 40);
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+        let tables = plan.resources.iter().find(|r| r.name == "specular_tables");
+        let bytes = tables.expect("tables, not SH").bytes();
+        println!("{azimuths} azimuths: {} MiB", bytes >> 20);
+        assert!(bytes <= 1 << 30, "{azimuths} azimuths: {bytes} bytes");
     }
 }
