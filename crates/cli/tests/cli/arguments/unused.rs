@@ -116,6 +116,33 @@ fn azimuths_for_narrow_lobes_on_steep_ground_are_printed() {
     }
 }
 
+/// The layer `horizon`, and a bake's horizons, keep 32 azimuths beside specular with more.
+#[test]
+fn gpu_azimuths_of_specular_change_no_horizon() {
+    let folder = Folder::new();
+    write_field(&folder, 9, |r, _| if r % 4 < 2 { 4.0 * r as f32 } else { 0.0 });
+    let horizons = |flags: &str| {
+        let args =
+            format!("render field.npy --sky 1 --albedo 0.5 --layers horizon{flags} -o horizon.exr");
+        let run = folder.run_str(&args);
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let image = exr::prelude::read_first_flat_layer_from_file(folder.path("horizon.exr"));
+        let channels = image.unwrap().layer_data.channel_data.list;
+        let horizon = channels.iter().find(|channel| channel.name.to_string() == "horizon_mean");
+        horizon.expect("a layer").sample_data.values_as_f32().collect::<Vec<f32>>()
+    };
+    let all = ["", " --specular 100,0.4", " --azimuths 128"].map(horizons);
+    assert_eq!(all[0], all[1]);
+    assert_ne!(all[0], all[2]);
+    let args = "bake field.npy --what horizon,scatter --sky 1 --albedo 0.5 --specular 100,0.4 --bounces 1 --directions 4 -o out";
+    let run = folder.run_str(args);
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let manifest = std::fs::read_to_string(folder.path("out/manifest.json")).unwrap();
+    for stated in ["\"azimuths\": 32", "\"direct_azimuths\": 128"] {
+        assert!(manifest.contains(stated), "{manifest}");
+    }
+}
+
 #[test]
 fn other_flags_are_not_noted() {
     let folder = folder();
