@@ -1,7 +1,9 @@
 // Computes: direct light of a sphere light: some of its vertical slices, each in closed form over the visible
-// intervals, added to other slices and sphere lights; and its Phong specular.
+// intervals, added to other slices and sphere lights; and its Phong specular. Where a bounce of specular light follows, also its incident
+// light as a series of spherical harmonics.
 // Reads: cells, maxima, ground, phong_map.
-// Reads and writes: sphere_sum (exit radiance for albedo 1), specular_sum (exit radiance).
+// Reads and writes: sphere_sum (exit radiance for albedo 1), specular_sum (exit radiance), arriving (four coefficients per layer, channel
+// after channel).
 // One invocation is one grid point.
 //
 // In a slice the sphere is a disc. An elevation is lit where the ray enters the disc (from inside: leaves it) before
@@ -23,6 +25,9 @@ layout(constant_id = 3) const int MOST_STEPS = 60000;
 
 layout(constant_id = 4) const bool HAS_SPECULAR = false;
 layout(constant_id = 5) const bool SPECULAR_IS_MAP = false;
+// Order of the series; 0 for none. One channel of radiance.
+layout(constant_id = 6) const int ORDER = 0;
+layout(constant_id = 7) const bool GREY = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D cells;
 layout(binding = 1, r32f) uniform readonly image2D maxima;
@@ -31,6 +36,7 @@ layout(binding = 3, rgba32f) uniform image2D sphere_sum;
 layout(binding = 4, rgba32f) uniform image2D specular_sum;
 // Phong exponent and scale.
 layout(binding = 5) uniform texture2D phong_map;
+layout(binding = 6, rgba32f) uniform image2DArray arriving;
 
 #include "rays/land.glsl"
 
@@ -57,6 +63,13 @@ layout(push_constant) uniform SphereShadePush {
 #include "specular/phong_slice.glsl"
 #include "specular/mirror.glsl"
 
+vec4 harmonics[36];
+#include "shared/harmonics.glsl"
+
+const int COUNT = ORDER * ORDER;
+const int FOURS = (COUNT + 3) / 4;
+const int CHANNELS = GREY ? 1 : 3;
+
 // The slice: its distance axis is horizontal, the grid point is its origin; metres.
 vec2 disc;           // centre
 float disc_radius;
@@ -75,6 +88,12 @@ float phong_power;
 float reached;
 float visible_light;
 float visible_specular;
+// For a series: four equal parts of the disc's elevations, counted from the axis. Where each begins, how high it is, how much of it is
+// visible, and the integral of the elevation over that.
+vec4 part_begins;
+float part_rad;
+vec4 part_visible;
+vec4 part_moment;
 
 // A direction of the slice, counted from the axis: cosine and sine.
 vec2 from_axis(float slope) {
@@ -123,6 +142,46 @@ float specular_between(vec2 low, vec2 high) {
     return max(above - phong_integral(phong_n, along, up, vec4(from.x), vec4(from.y)).x, 0.0);
 }
 
+// Adds the elevations between two directions to the parts of the disc.
+void add_to_parts(vec2 low, vec2 high) {
+    vec4 ends = arc_tangent(vec4(low.y, high.y, 0.0, 0.0) / max(vec4(low.x, high.x, 1.0, 1.0), 1e-30));
+    vec4 from = clamp(vec4(ends.x), part_begins, part_begins + part_rad);
+    vec4 to = clamp(vec4(ends.y), part_begins, part_begins + part_rad);
+    vec4 visible = max(to - from, 0.0);
+    part_visible += visible;
+    part_moment += 0.5 * visible * (from + to);
+}
+
+// Harmonics of each part at the middle of what is visible of it, in the slice of azimuth e, and their weights: integrals of the
+// cosine of elevation over an interval of that length.
+vec4 part_harmonics(vec2 e) {
+    vec4 flat_parts;
+    vec4 up;
+    vec4 middle = clamp(part_moment / max(part_visible, 1e-30), part_begins, part_begins + part_rad);
+    for (int k = 0; k < 4; k++) {
+        vec2 direction = turned(axis, vec2(cosine(middle[k]), sine(middle[k])));
+        flat_parts[k] = max(direction.x, 0.0);
+        up[k] = direction.y;
+    }
+    find_harmonics(flat_parts * e.x, flat_parts * e.y, up);
+    return flat_parts * part_visible * (1.0 - part_visible * part_visible / 24.0);
+}
+
+// Adds the light in front of a surface piece between two distances, up to a slope.
+void add_interval(vec2 begin, float slope, float from, float to, float top_slope, bool counts) {
+    float low = max((begin.y + slope * (from - begin.x)) / from, reached);
+    float high = min((begin.y + slope * (to - begin.x)) / to, top_slope);
+    float light = light_between(from_axis(low), from_axis(high));
+    counts = counts && to > from && high > low;
+    visible_light += counts ? light : 0.0;
+    if (HAS_SPECULAR && counts) {
+        visible_specular += specular_between(from_axis(low), from_axis(high));
+    }
+    if (ORDER > 0 && counts) {
+        add_to_parts(from_axis(low), from_axis(high));
+    }
+}
+
 // Adds a surface piece, from a distance and height to a farther one: the visible interval of the disc in front of it,
 // where some of the piece itself is visible.
 void add_piece(vec2 begin, vec2 end) {
@@ -157,19 +216,14 @@ void add_piece(vec2 begin, vec2 end) {
     float after = after_at * disc.x + (begin.y + slope * (after_at - begin.x)) * disc.y;
     float from_outside = before > tangent2 ? visible_from : enters;
     float to_outside = after > tangent2 ? visible_to : leaves;
-    // From inside, a hit within the sphere hides.
-    float from_inside = is_met ? leaves : visible_from;
+    bool counts = begin.x > 0.0 && end.x > begin.x && end_slope > reached && reached < high_slope;
+    // From inside, a hit within the sphere hides: there may be light on both sides of it.
     bool is_inside = tangent2 <= 0.0;
-    float from = is_inside ? from_inside : from_outside;
+    float from = is_inside ? leaves : from_outside;
     float to = is_inside ? visible_to : to_outside;
-    float low = (begin.y + slope * (from - begin.x)) / from;
-    float high = min((begin.y + slope * (to - begin.x)) / to, top_slope);
-    low = max(low, reached);
-    float light = light_between(from_axis(low), from_axis(high));
-    bool counts = begin.x > 0.0 && end.x > begin.x && end_slope > reached && reached < high_slope && to > from && high > low;
-    visible_light += counts ? light : 0.0;
-    if (HAS_SPECULAR && counts) {
-        visible_specular += specular_between(from_axis(low), from_axis(high));
+    add_interval(begin, slope, from, to, top_slope, counts);
+    if (is_inside) {
+        add_interval(begin, slope, visible_from, enters, top_slope, counts);
     }
 }
 
@@ -231,11 +285,8 @@ void march(Ray ray, bool going) {
     }
 }
 
-// Light of the slice at azimuth `turn` from the sphere's centre (half of it: cosine, sine), per radian: diffuse, and specular of
-// scale 1.
-vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 towards, float away, float up, vec2 half_turn, bool alive) {
-    vec2 turn = turned(half_turn, half_turn);
-    vec2 e = turned(towards, turn);
+// Light of the slice at azimuth e, by `turn` from the sphere's centre, per radian: diffuse, and specular of scale 1.
+vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 turn, vec2 e, float away, float up, bool alive) {
     float across = away * turn.y;
     float chord2 = (radius_m - across) * (radius_m + across);
     disc = vec2(away * turn.x, up);
@@ -275,7 +326,15 @@ vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 towards, float away, fl
         phong_up = mirror.z * shorten;
         phong_power = off_slice(vec4(phong_n), vec4(mirror.x * e.y - mirror.y * e.x), vec4(within)).x;
     }
-    march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), alive && reached < high_slope);
+    if (ORDER > 0) {
+        vec4 ends = arc_tangent(vec4(low.y, high.y, 0.0, 0.0) / max(vec4(low.x, high.x, 1.0, 1.0), 1e-30));
+        part_rad = 0.25 * max(ends.y - ends.x, 0.0);
+        part_begins = ends.x + part_rad * vec4(0.0, 1.0, 2.0, 3.0);
+        part_visible = vec4(0.0);
+        part_moment = vec4(0.0);
+    }
+    bool is_lit = alive && reached < high_slope;
+    march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), is_lit);
     vec2 visible_from = from_axis(reached);
     vec2 lowest = reached > low_slope ? visible_from : low;
     float rest = light_between(lowest, high);
@@ -284,6 +343,9 @@ vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 towards, float away, fl
     if (HAS_SPECULAR) {
         float of_rest = reached < high_slope ? specular_between(lowest, high) : 0.0;
         specular = phong_power * (visible_specular + of_rest);
+    }
+    if (ORDER > 0 && is_lit && reached < high_slope) {
+        add_to_parts(lowest, high);
     }
     return alive ? vec2(light, specular) : vec2(0.0);
 }
@@ -325,6 +387,13 @@ void main() {
         mirror = vec3(about.east.x, about.north.x, about.up.x);
     }
     vec2 light = vec2(0.0);
+    float series[36];
+    if (ORDER > 0) {
+        // Zero past the last coefficient.
+        for (int k = 0; k < 36; k++) {
+            series[k] = 0.0;
+        }
+    }
     for (int i = first_slice; i < last_slice; i++) {
         bool has_slice = alive && i < count;
         if (!subgroupAny(has_slice)) {
@@ -342,8 +411,17 @@ void main() {
         float alone = count > 1 ? 1.0 : 0.5;
         float weight_ahead = alone * widest * cosine(u) * PI / float(count);
         float weight = around ? weight_around : weight_ahead;
-        vec2 slice = slice_light(here, own, mirror, towards, away, up, vec2(cosine(half_turn), sine(half_turn)), has_slice);
+        vec2 half_way = vec2(cosine(half_turn), sine(half_turn));
+        vec2 turn = turned(half_way, half_way);
+        vec2 e = turned(towards, turn);
+        vec2 slice = slice_light(here, own, mirror, turn, e, away, up, has_slice);
         light += has_slice ? weight * slice : vec2(0.0);
+        if (ORDER > 0 && has_slice) {
+            vec4 weights = weight * part_harmonics(e);
+            for (int k = 0; k < COUNT; k++) {
+                series[k] += dot(weights, harmonics[k]);
+            }
+        }
     }
     if (exists) {
         vec4 before = imageLoad(sphere_sum, at);
@@ -355,6 +433,18 @@ void main() {
             vec4 more = vec4(radiance.rgb * (of_scale * light.y), 0.0);
             vec4 together = already + more;
             imageStore(specular_sum, at, specular_begins > 0.0 ? more : together);
+        }
+        if (ORDER > 0) {
+            for (int i = 0; i < FOURS; i++) {
+                vec4 four = vec4(series[4 * i], series[4 * i + 1], series[4 * i + 2], series[4 * i + 3]);
+                for (int c = 0; c < CHANNELS; c++) {
+                    ivec3 layer = ivec3(at, c * FOURS + i);
+                    vec4 already = imageLoad(arriving, layer);
+                    vec4 more = radiance[c] * four;
+                    vec4 together = already + more;
+                    imageStore(arriving, layer, specular_begins > 0.0 ? more : together);
+                }
+            }
         }
     }
 }

@@ -91,6 +91,9 @@ fn dispatch(
         vec![("cells", cells), ("maxima", maxima), ("ground", blocks.ground), ("sphere_sum", sum)];
     bound.extend(specular.map(|s| ("specular_sum", s.specular_sum)));
     bound.extend(specular.and_then(|s| s.phong.map).map(|map| ("phong_map", map)));
+    let outgoing = specular.and_then(|s| s.outgoing);
+    bound.extend(outgoing.map(|outgoing| ("arriving", outgoing.arriving)));
+    let layers = outgoing.map_or(0, |outgoing| u64::from(outgoing.layers()));
     builder.pass(
         shaders::SphereShade {
             border: scene.surface.border as u32,
@@ -99,6 +102,8 @@ fn dispatch(
             most_steps: blocks.levels.most_steps() as i32,
             has_specular: specular.is_some(),
             specular_is_map: specular.is_some_and(|s| s.phong.map.is_some()),
+            order: outgoing.map_or(0, |outgoing| outgoing.order) as i32,
+            grey: outgoing.is_some_and(|outgoing| outgoing.grey),
         },
         part,
         shading.why,
@@ -122,7 +127,7 @@ fn dispatch(
             eye_m: specular.map_or([0.0; 4], |s| s.eye_m),
         },
         &bound,
-        grid_points * 16 * if specular.is_some() { 5 } else { 3 },
+        grid_points * 16 * (2 * layers + if specular.is_some() { 5 } else { 3 }),
         grid_points * slices.len() as u64,
     );
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::graph::{Rectangle, ResourceId};
 use crate::passes::PhongSource;
+use crate::passes::bounced_specular::BouncedSpecular;
 use crate::scene::{HeightField, SphereLight};
 
 /// How and where a sphere light is shaded.
@@ -31,6 +32,8 @@ pub(crate) struct SphereSpecular {
     pub specular_sum: ResourceId,
     /// Whether the sum begins with it.
     pub begins: bool,
+    /// Where another bounce follows: its light also arrives as a series.
+    pub outgoing: Option<BouncedSpecular>,
 }
 
 impl SphereShading {

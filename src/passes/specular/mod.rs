@@ -3,6 +3,8 @@
 //! `bounced_specular` holds the images of bounced specular light; the other files are one per pass.
 
 pub(crate) mod bounced_specular;
+/// Specular with bounces: arriving light of key lights as SH.
+pub(crate) mod key_arriving;
 /// Specular light of sky and environment without occlusion, by mirror direction.
 pub(crate) mod mirror_map;
 /// Specular with bounces: leaving light by direction or straight upwards.

@@ -249,6 +249,9 @@ impl Drawing<'_> {
                     builder, sweep, border, cell_m, batch, &part, lanes, shape, lattice, ids,
                     specular, resolves,
                 );
+                if let Some(specular) = specular {
+                    self.key_arriving(batch, &part, specular);
+                }
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
             if let (Some(&(_, sun)), Some(batch)) = (self.active.suns.get(i), batches.last()) {

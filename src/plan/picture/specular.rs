@@ -47,11 +47,6 @@ pub(super) fn quality(
         }));
     }
     let quality = bounced(*quality, notes)?;
-    let key = (!active.keys.is_empty()).then_some("key light");
-    if let Some(name) = key.or(sphere).filter(|_| quality.bounces.count > 0) {
-        let alone = "no `bounces`; the path-traced reference supports both";
-        return refuse(&format!("specular with bounces under a {name}"), alone);
-    }
     notes.extend(active.key_notes(&quality));
     if let Some(specular) = active.by_slices(&quality) {
         let of = match specular_tables::levels(specular).len() {
@@ -214,7 +209,25 @@ impl Drawing<'_> {
         let (specular_sum, phong) = self.images.specular_sum.zip(self.phong())?;
         let (slices_around, eye_m) = (self.active.specular_slices_around(), self.eye_m);
         let begins = !std::mem::replace(&mut self.specular_is_begun, true);
-        Some(SphereSpecular { phong, slices_around, eye_m, specular_sum, begins })
+        let outgoing = self.bounced_by_direction();
+        Some(SphereSpecular { phong, slices_around, eye_m, specular_sum, begins, outgoing })
+    }
+
+    /// Light that arrives from a batch of a key light's azimuths, after its [specular](Self::key_specular), if specular bounces keep
+    /// directions.
+    pub(super) fn key_arriving(
+        &mut self,
+        batch: &Batch,
+        part: &str,
+        KeySpecular { radiance, begins, .. }: KeySpecular,
+    ) {
+        let (Some(outgoing), Some(sweeping)) = (self.bounced_by_direction(), &self.sweeping) else {
+            return;
+        };
+        let field = (&sweeping.sweep, self.scene.surface.border, self.scene.field.cell_m());
+        let ids = (sweeping.lanes(batch), sweeping.lattice(batch), sweeping.azimuths);
+        let light = (radiance, begins);
+        passes::key_arriving::plan(&mut self.builder, field, (batch, part), ids, light, &outgoing);
     }
 
     /// Light that arrives from sky and environment, if specular bounces keep directions.
@@ -357,31 +370,55 @@ mod tests {
         plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
     }
 
-    /// Specular of key lights and sphere lights is not part of the light that bounces, and that of sphere lights has no harmonics.
-    /// Dark lights, or a surface without specular, raise no error.
+    /// Specular of sphere lights has no harmonics. Dark lights, or a surface without specular, raise no error.
     #[test]
     fn specular_names_the_lights_and_settings_it_rejects() {
         let base = Quality { azimuths: 8, ..Quality::default() };
         let soft = Quality { light_basis: LightBasis::Sh, ..base };
-        let bounced = Quality { bounces: Bounces { count: 1, ..base.bounces }, ..base };
-        let of_key = |radiance| Lights { keys: vec![KeyLight { radiance, ..key() }], ..sky() };
-        let of_sphere = |radiance| Lights {
+        let of = |radiance| Lights {
             sphere_lights: vec![SphereLight { radiance, ..sphere() }],
             ..sky()
         };
-        for (lights, quality, said) in [
-            (of_key([1.0; 3]), bounced, "specular with bounces under a key light"),
-            (of_sphere([1.0; 3]), bounced, "specular with bounces under a sphere light"),
-            (of_sphere([1.0; 3]), soft, "specular under a sphere light by `light_basis sh`"),
-        ] {
-            let message = planned(lights.clone(), 0.5, quality).unwrap_err().to_string();
-            assert!(message.contains(said), "{message}");
-            assert!(planned(lights.clone(), 0.5, base).is_ok(), "{said}");
-            assert!(planned(lights, 0.0, quality).is_ok(), "{said}");
-        }
-        assert!(planned(of_key([0.0; 3]), 0.5, bounced).is_ok());
-        assert!(planned(of_sphere([0.0; 3]), 0.5, bounced).is_ok());
+        let message = planned(of([1.0; 3]), 0.5, soft).unwrap_err().to_string();
+        assert!(message.contains("specular under a sphere light by `light_basis sh`"), "{message}");
+        assert!(planned(of([1.0; 3]), 0.5, base).is_ok());
+        assert!(planned(of([1.0; 3]), 0.0, soft).is_ok());
+        assert!(planned(of([0.0; 3]), 0.5, soft).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+    }
+
+    /// All lights that specular reflects are part of the light that bounces: by direction as a series, to which each adds, and which the
+    /// first begins; as one number a texel, without it.
+    #[test]
+    fn key_lights_and_sphere_lights_arrive_by_direction() {
+        let lights = Lights {
+            keys: vec![key(), key()],
+            sphere_lights: vec![sphere(), sphere()],
+            ..Lights::default()
+        };
+        for specular in [BounceSpecular::Vector, BounceSpecular::Scalar] {
+            let bounces = Bounces { count: 2, specular, ..Bounces::default() };
+            let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+            let plan = planned(lights.clone(), 0.5, quality).expect("a plan");
+            let writes = |pass: &&crate::graph::Pass| {
+                let place = pass.shader.bindings.iter().position(|b| b.name == "arriving");
+                place.is_some_and(|i| pass.bindings[i].is_some())
+            };
+            let labels: Vec<String> =
+                plan.passes.iter().filter(writes).map(crate::graph::Pass::label).collect();
+            let direct: Vec<&str> =
+                labels.iter().map(String::as_str).take_while(|l| !l.contains("exit")).collect();
+            let by_direction = [
+                "key_arriving key1",
+                "key_arriving key2",
+                "sphere_shade sphere_light1",
+                "sphere_shade sphere_light2",
+            ];
+            match specular {
+                BounceSpecular::Scalar => assert!(direct.iter().all(|l| l.contains("gather"))),
+                _ => assert_eq!(direct, by_direction),
+            }
+        }
     }
 
     /// Only a sun across which the lobe varies has a light vector: n r² > 0.01.

@@ -9,10 +9,10 @@ pub(crate) mod sun;
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights,
-    PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+    PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
 };
 
-use crate::cpu_reference::{Case, Reference, Wanted, check_all, noisy_environment, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, check_all, key, noisy_environment, rough};
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
@@ -20,6 +20,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     ("mirror_map", slices::mirror_map),
     ("specular_light", slices::specular_light),
     ("sun_specular", sun::sun_specular),
+    ("key_arriving", key::key_arriving),
     ("specular_exit", bounced::specular_exit),
     ("specular_gather", bounced::specular_gather),
     ("specular_visibility", bounced::specular_visibility),
@@ -37,6 +38,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "by direction, f16, grey, with an eye",
             "as visible from above",
             "as visible from above, grey",
+            "by direction, of a key light",
         ],
     );
     all.extend(of_engine(
@@ -48,12 +50,13 @@ pub(crate) fn cases() -> Vec<Case> {
             "by direction, f16, grey, with an eye, brute force",
             "as visible from above, brute force",
             "as visible from above, grey, brute force",
+            "by direction, of a key light, brute force",
         ],
     ));
     all
 }
 
-fn of_engine(engine: BounceEngine, names: [&'static str; 6]) -> Vec<Case> {
+fn of_engine(engine: BounceEngine, names: [&'static str; 7]) -> Vec<Case> {
     let case = |name, field: HeightField, border, specular, sh_order, levels, lights| {
         let texels = field.heights_m().len();
         let is_map = specular == BounceSpecular::Vector;
@@ -101,13 +104,24 @@ fn of_engine(engine: BounceEngine, names: [&'static str; 6]) -> Vec<Case> {
         diameter_rad,
         irradiance,
     };
+    // Over the ground, which it may cut.
+    let sphere = |x: f64, radius_m: f64, radiance| SphereLight {
+        position_m: [x, 5.0, 906.0],
+        radius_m,
+        radiance,
+    };
     let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let all = Lights {
         environment: Some(noisy_environment(51)),
         suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+        keys: vec![key(0.2, 0.9, [1.0, 2.0, 0.5])],
+        sphere_lights: vec![sphere(4.0, 3.5, [3.0, 2.0, 1.0]), sphere(14.0, 6.0, [0.5, 1.0, 2.0])],
         ..sky()
     };
     let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
+    let keys = Lights { keys: vec![key(-0.5, 1.1, [2.0, 1.0, 0.5])], ..Lights::default() };
+    let spheres = [sphere(5.0, 4.0, [2.0; 3]), sphere(-3.0, 8.0, [1.0; 3])];
+    let spheres = Lights { sphere_lights: spheres.to_vec(), ..Lights::default() };
     let eye_m = Some([30.0, -40.0, 960.0]);
     let with_an_eye = |case: Case| Case {
         wanted: Wanted::Picture(Picture { light_layers: true, eye_m, ..Picture::default() }),
@@ -119,17 +133,10 @@ fn of_engine(engine: BounceEngine, names: [&'static str; 6]) -> Vec<Case> {
         case(names[0], rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),
         case(names[1], rough(8, 10, 53), Border::Periodic, VectorF16, 4, levels, sky()),
         with_an_eye(case(names[2], rough(9, 11, 56), Border::Open, Vector, 4, levels, all.clone())),
-        with_an_eye(case(
-            names[3],
-            rough(8, 9, 57),
-            Border::Plane,
-            VectorF16,
-            3,
-            stack,
-            alone.clone(),
-        )),
+        with_an_eye(case(names[3], rough(8, 9, 57), Border::Plane, VectorF16, 3, stack, spheres)),
         case(names[4], rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
         case(names[5], rough(7, 9, 55), Border::Plane, Scalar, 3, stack, alone),
+        case(names[6], rough(8, 11, 58), Border::Periodic, Vector, 6, stack, keys),
     ]
 }
 

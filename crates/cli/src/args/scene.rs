@@ -121,7 +121,6 @@ pub struct SceneArgs {
     ///
     /// The Phong lobe is centred on the mirror direction of the view: of --camera or, without it, from straight above. SCALE plus
     /// --albedo is at most 1. A file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols].
-    /// `render` refuses key lights and sphere lights with --bounces; `reference` reflects all lights.
     #[arg(
         long,
         value_name = "EXPONENT,SCALE|FILE",

@@ -11,22 +11,50 @@ use crate::shared::field::towards_m;
 use ridgelight::scene::{HeightField, SphereLight};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+/// One azimuth of a sphere light.
+pub(crate) struct SphereSlice {
+    pub azimuth_rad: f64,
+    /// Radians for which it stands.
+    pub weight: f64,
+    /// Elevations of the disc.
+    pub ends_rad: [f64; 2],
+    /// Visible elevations.
+    pub visible_rad: Vec<[f64; 2]>,
+}
+
 impl Site<'_> {
     /// Exit radiance of its receivers under a sphere light of radiance 1.
     ///
     /// `strips` azimuths: over the sphere's width, spaced so that the disc's square root is smooth, or over the circle
     /// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
     pub fn sphere(&self, sphere: &SphereLight, strips: usize) -> Vec<f64> {
-        let Self { oracle, place: [row, col], receivers, .. } = *self;
+        let mut sums = vec![0.0; self.receivers.len()];
+        for SphereSlice { azimuth_rad, weight, visible_rad, .. } in self.slices(sphere, strips) {
+            for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
+                let slice = receiver.slice(azimuth_rad);
+                let light = visible_rad.iter().map(|[low, high]| weight * slice.light(*low, *high));
+                *sum += light.sum::<f64>();
+            }
+        }
+        sums.iter().map(|s| s / PI).collect()
+    }
+
+    /// The azimuths of [`sphere`](Self::sphere) that cut the sphere.
+    pub(crate) fn slices(
+        &self,
+        sphere: &SphereLight,
+        strips: usize,
+    ) -> impl Iterator<Item = SphereSlice> {
+        let Self { oracle, place: [row, col], .. } = *self;
         let [east, north] = towards_m(oracle.field(), row, col, sphere);
         let up = sphere.position_m[2] - oracle.field().base_m();
         let up = up - oracle.vertex(row as f64, col as f64);
         let (away, middle) = (east.hypot(north), north.atan2(east));
-        let widest = (sphere.radius_m / away).asin();
-        let mut sums = vec![0.0; receivers.len()];
-        for i in 0..strips {
+        let radius_m = sphere.radius_m;
+        let widest = (radius_m / away).asin();
+        (0..strips).filter_map(move |i| {
             let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
-            let (offset, weight) = if sphere.radius_m < away {
+            let (offset, weight) = if radius_m < away {
                 let u = FRAC_PI_2 * centre;
                 // Narrow discs are cos u wide: midpoints sum cos² exactly, except that a single one counts it twice.
                 let alone = if strips > 1 { 1.0 } else { 0.5 };
@@ -34,21 +62,17 @@ impl Site<'_> {
             } else {
                 (PI * centre, TAU / strips as f64)
             };
-            let azimuth = middle + offset;
+            let azimuth_rad = middle + offset;
             let across = away * offset.sin();
-            let squared = sphere.radius_m * sphere.radius_m - across * across;
+            let squared = radius_m * radius_m - across * across;
             if squared <= 0.0 {
-                continue;
+                return None;
             }
             let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
-            let visible = disc.visible(&oracle.visible_intervals(row, col, azimuth));
-            for (receiver, sum) in receivers.iter().zip(&mut sums) {
-                let slice = receiver.slice(azimuth);
-                let light = visible.iter().map(|[low, high]| weight * slice.light(*low, *high));
-                *sum += light.sum::<f64>();
-            }
-        }
-        sums.iter().map(|s| s / PI).collect()
+            let ends_rad = disc.ends_rad();
+            let visible_rad = disc.visible(&oracle.visible_intervals(row, col, azimuth_rad));
+            Some(SphereSlice { azimuth_rad, weight, ends_rad, visible_rad })
+        })
     }
 }
 
@@ -85,15 +109,20 @@ struct Disc {
 }
 
 impl Disc {
+    /// Elevations of the disc's ends.
+    fn ends_rad(&self) -> [f64; 2] {
+        let distance = self.along.hypot(self.up);
+        if distance > self.radius {
+            let (middle, half) = (self.up.atan2(self.along), (self.radius / distance).asin());
+            [(middle - half).max(-FRAC_PI_2), (middle + half).min(FRAC_PI_2)]
+        } else {
+            [-FRAC_PI_2, FRAC_PI_2]
+        }
+    }
+
     /// The visible elevations of the disc.
     fn visible(&self, intervals: &[VisibleInterval]) -> Vec<[f64; 2]> {
-        let distance = self.along.hypot(self.up);
-        let (low, high) = if distance > self.radius {
-            let (middle, half) = (self.up.atan2(self.along), (self.radius / distance).asin());
-            ((middle - half).max(-FRAC_PI_2), (middle + half).min(FRAC_PI_2))
-        } else {
-            (-FRAC_PI_2, FRAC_PI_2)
-        };
+        let [low, high] = self.ends_rad();
         let mut visible = Vec::new();
         for interval in intervals {
             let mut cuts = vec![interval.low_rad, interval.high_rad, low, high];

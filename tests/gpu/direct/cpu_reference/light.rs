@@ -358,6 +358,7 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect();
     run.sphere_lights = sphere_lights;
     pairs.extend(sphere::specular(run, pass, &sphere_light, counts));
+    pairs.extend(sphere::series(run, pass, &sphere_light, (counts, reach)));
     pairs
 }
 

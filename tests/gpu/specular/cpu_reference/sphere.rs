@@ -1,21 +1,26 @@
-//! Phong specular of sphere lights, which `sphere_shade` adds.
+//! Phong specular of sphere lights, and their light that bounces reflect, which `sphere_shade` adds.
 
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{SphereLight, normal};
 use ridgelight_cpu::light::Receiver;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sphere_shade::{device_sphere_specular, sphere_with};
+use ridgelight_cpu::sphere_shade::{
+    arriving, device_sphere_arriving, device_sphere_specular, sphere_with,
+};
 use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry};
 
+use super::bounced::paired;
 use super::slices::{VIEW_ERROR, eye_of, view_from};
-use crate::cpu_reference::{Pair, Run, pushed};
+use crate::cpu_reference::{Pair, Run, constant, pushed};
 
-/// Empties the sum where the first light begins it.
+/// Empties the sums where the first light begins them.
 pub(crate) fn begin(run: &mut Run, pass: &Pass) {
     const SPECULAR_BEGINS: usize = offset("SphereShadePush", "specular_begins");
     if f32::from_bits(pushed(pass, SPECULAR_BEGINS)) > 0.0 {
-        run.specular = vec![[0.0; 3]; run.scene.field.heights_m().len()];
+        let (order, texels) = (constant(pass, "order") as usize, run.scene.field.heights_m().len());
+        run.specular = vec![[0.0; 3]; texels];
+        run.arriving = vec![vec![[0.0; 3]; order * order]; texels];
     }
 }
 
@@ -51,5 +56,42 @@ pub(crate) fn specular(
             pairs.push(Pair { got: *sum, want, tolerance, at: [c, place[0], place[1]] });
         }
     }
+    pairs
+}
+
+/// The device's own earlier series, plus what all slices of a sphere light add to it; empty where none are kept.
+pub(crate) fn series(
+    run: &mut Run,
+    pass: &Pass,
+    light: &SphereLight,
+    (counts, reach_m): ([u32; 2], f64),
+) -> Vec<Pair> {
+    let order = constant(pass, "order") as usize;
+    if order == 0 {
+        return Vec::new();
+    }
+    let got = run.all_series(pass, "arriving", order);
+    let field = &run.scene.field;
+    let oracle = Oracle::new(field, run.border());
+    let [cols, _] = run.size();
+    let brightest = light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+    let mut pairs = Vec::new();
+    for (i, (got, before)) in got.iter().zip(&run.arriving).enumerate() {
+        let place = [i / cols, i % cols];
+        let geometry = SphereGeometry::of(field, light, i);
+        let mut want = before.clone();
+        if geometry.distance_m <= reach_m {
+            let more = arriving(&oracle, light, counts, place, order);
+            for (sum, y) in want.iter_mut().zip(more) {
+                for (sum, radiance) in sum.iter_mut().zip(light.radiance) {
+                    *sum += f64::from(radiance) * y;
+                }
+            }
+        }
+        let off = f64::from(brightest) * device_sphere_arriving(&geometry);
+        let tolerance = |want: f64| off + 4.0 * EPSILON * want.abs();
+        pairs.extend(paired((got, &want), tolerance, place));
+    }
+    run.arriving = got;
     pairs
 }

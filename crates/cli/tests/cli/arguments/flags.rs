@@ -225,11 +225,6 @@ fn specular() {
             ("--specular -1,0.5 --albedo 0.5", 2, &["--specular exponent: found -1"]),
             ("--specular 10,0.5", 2, &["--specular scale", "albedo of 1"]),
             (
-                "--specular 10,0.5 --albedo 0.5 --key 0,30,9,9,1 --bounces 1",
-                2,
-                &["--specular: found", "bounces under a key light"],
-            ),
-            (
                 "--specular 10,0.5 --albedo 0.5 --sphere-light 1,2,3,1,5 --light-basis sh",
                 2,
                 &["--specular: found", "under a sphere light", "exact"],
