@@ -25,6 +25,7 @@ layout(push_constant) uniform ShadePush {
     int first_level;     // of a specular map: see levels.glsl
     int level_count;
     float levels_per_log;
+    uint along_count;    // azimuths of the batch, the first ones, that follow the cells' diagonals
 };
 
 // A branch, not a specialisation constant: frames and edits share a pipeline and therefore round identically.
@@ -69,21 +70,32 @@ Azimuth azimuth_of(uint k) {
 }
 
 // `east` and `north` are the surface slopes at the grid points.
+void add_azimuth(uint k, Quad q, int lanes, int steps, vec4 east, vec4 north, bool diagonals_along) {
+    Azimuth azimuth = azimuth_of(k);
+    vec4 lowest = vec4(NO_SLOPE);
+    if (OWN_PLANE_HIDES) {
+        // Rise of the grid point's own tangent plane along the azimuth (TW10 eq. 4).
+        lowest = east * azimuth.cos_phi + north * azimuth.sin_phi;
+    }
+    // Directions below the own plane need no horizon.
+    float dark = dark_slope(azimuth);
+    vec4 enough = mix(vec4(dark), vec4(NO_SLOPE), greaterThanEqual(lowest, vec4(dark)));
+    lowest = max(fused(azimuth, q, lanes, steps, warm_up, enough, diagonals_along).slope, lowest);
+    if (BORDER != BORDER_OPEN) {
+        lowest = max(lowest, vec4(0.0));
+    }
+    add_light(k, azimuth, lowest);
+}
+
+// Both loops have fewer crossings to compare than one loop for all azimuths: llvmpipe executes both sides of a branch.
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
-    for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
-        Azimuth azimuth = azimuth_of(k);
-        vec4 lowest = vec4(NO_SLOPE);
-        if (OWN_PLANE_HIDES) {
-            // Rise of the grid point's own tangent plane along the azimuth (TW10 eq. 4).
-            lowest = east * azimuth.cos_phi + north * azimuth.sin_phi;
+    uint k = first_azimuth;
+    if (FUSE == FUSE_AIMED_AROUND) {
+        for (; k < first_azimuth + along_count; k++) {
+            add_azimuth(k, q, lanes, steps, east, north, true);
         }
-        // Directions below the own plane need no horizon.
-        float dark = dark_slope(azimuth);
-        vec4 enough = mix(vec4(dark), vec4(NO_SLOPE), greaterThanEqual(lowest, vec4(dark)));
-        lowest = max(fused(azimuth, q, lanes, steps, warm_up, enough).slope, lowest);
-        if (BORDER != BORDER_OPEN) {
-            lowest = max(lowest, vec4(0.0));
-        }
-        add_light(k, azimuth, lowest);
+    }
+    for (; k < first_azimuth + azimuth_count; k++) {
+        add_azimuth(k, q, lanes, steps, east, north, false);
     }
 }

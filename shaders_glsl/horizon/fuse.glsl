@@ -88,16 +88,14 @@ struct Beside {
 };
 
 // One step of raise_beside, to `back` steps ahead; none past `last`.
-void step_beside(Azimuth azimuth, Quad q, ivec4 back, ivec4 last, int lanes, int steps, inout Beside beside) {
+void step_beside(Azimuth azimuth, Quad q, ivec4 back, ivec4 last, int lanes, int steps, bool diagonals_along, inout Beside beside) {
     bool wraps = BORDER == BORDER_PERIODIC;
-    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    bvec4 along = bvec4(flips_march == flips_lanes);
+    bvec4 along = bvec4(diagonals_along);
     int step = march_position(azimuth, q.march, steps);
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
     float per_lane = 1.0 / max(advance, 1e-9);
     float per_split_across = 1.0 / (1.0 + advance);
-    float per_split = flips_march == flips_lanes ? 1.0 / max(1.0 - advance, 1e-9) : per_split_across;
+    float per_split = diagonals_along ? 1.0 / max(1.0 - advance, 1e-9) : per_split_across;
     vec4 own = q.here.four;
     // With shear 0 a line stays in its lane and leaves no side of the field.
     int edge = wraps || azimuth.shear == 0 ? -0x7fffffff : 0;
@@ -143,7 +141,7 @@ void step_beside(Azimuth azimuth, Quad q, ivec4 back, ivec4 last, int lanes, int
 // Raises `met` to the highest crossing of each grid point's own line with grid lines and diagonals beside the nearer line's
 // proposal, `nearer` steps ahead: a step to either side, and one more towards the other line's. Ridges that unit steps miss
 // lie there. `reach` steps lie ahead. The crossings are those of look_around, for four grid points at once: change both.
-void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, inout Met met) {
+void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach, int lanes, int steps, bool diagonals_along, inout Met met) {
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
     int step = march_position(azimuth, q.march, steps);
@@ -162,12 +160,12 @@ void raise_beside(Azimuth azimuth, Quad q, ivec4 nearer, ivec4 other, int reach,
     if (READS_LANE_WINDOWS) {
         // llvmpipe keeps what a loop changes in memory.
         [[unroll]] for (int i = 0; i < 3; i++) {
-            step_beside(azimuth, q, first + i, last, lanes, steps, beside);
+            step_beside(azimuth, q, first + i, last, lanes, steps, diagonals_along, beside);
         }
     } else {
         // If the loop is unrolled, RADV uses more registers: with specular, occupancy falls by a third.
         [[dont_unroll]] for (int i = 0; i < 3; i++) {
-            step_beside(azimuth, q, first + i, last, lanes, steps, beside);
+            step_beside(azimuth, q, first + i, last, lanes, steps, diagonals_along, beside);
         }
     }
     Met found = beside.found;
@@ -251,7 +249,7 @@ Around lines_around(Azimuth azimuth, Place at) {
 
 // Slopes of the horizons of four grid points and their distance in march steps. Slopes above `enough` need not be
 // exact.
-Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough) {
+Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough, bool diagonals_along) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     Met met;
@@ -324,7 +322,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         // `raise_beside` also tests the step of the nearer line's occluder.
         // On llvmpipe the branch saves nothing.
         if (READS_LANE_WINDOWS || any(lessThan(met.slope, enough))) {
-            raise_beside(azimuth, q, ivec4(nearer), ivec4(other), at.step, lanes, steps, met);
+            raise_beside(azimuth, q, ivec4(nearer), ivec4(other), at.step, lanes, steps, diagonals_along, met);
         }
         return met;
     }

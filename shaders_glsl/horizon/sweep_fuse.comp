@@ -51,7 +51,7 @@ void main() {
         return;
     }
     Azimuth azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
-    Met found = fused(azimuth, quad_at(lane, march, lanes, steps), lanes, steps, warm_up, vec4(-NO_SLOPE));
+    Met found = fused(azimuth, quad_at(lane, march, lanes, steps), lanes, steps, warm_up, vec4(-NO_SLOPE), diagonals_follow(azimuth));
     bvec4 nothing = lessThanEqual(found.slope, vec4(LOWEST_MET));
     vec4 angle = mix(arc_tangent(found.slope), vec4(-HALF_PI), nothing);
     vec4 distance = found.steps * azimuth.step_m;

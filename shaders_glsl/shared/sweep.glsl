@@ -9,6 +9,11 @@ int march_position(Azimuth azimuth, int step, int steps) {
     return (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u ? flipped : step;
 }
 
+// Whether the diagonals of the cells go from (0, 0) to (1, 1) of an azimuth's lanes and steps, not from (1, 0) to (0, 1).
+bool diagonals_follow(Azimuth azimuth) {
+    return ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+}
+
 // Position along the lane axis of a lane, and back.
 int lane_position(Azimuth azimuth, int lane, int lanes) {
     int flipped = lanes - 1 - lane;

@@ -53,6 +53,7 @@ impl shaders::ShadePush {
             warm_up: batch.axis.warm_up as i32,
             first_azimuth: batch.first,
             azimuth_count: batch.count,
+            along_count: batch.along,
             clears: u32::from(batch.is_first),
             ..bytemuck::Zeroable::zeroed()
         }

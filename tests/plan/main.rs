@@ -12,6 +12,8 @@ mod walks;
 
 use std::collections::HashSet;
 
+use ridgelight::gpu::shaders::offset;
+use ridgelight::plan::azimuths::{FLIPS_LANES, FLIPS_MARCH};
 use ridgelight::plan::{
     self, Kind, Limits, Owner, Pass, Picture, Plan, Reach, SweepForm, missing_barriers,
 };
@@ -430,6 +432,35 @@ fn all_sweeps_have_one_fuse() {
     };
     assert_eq!(margins(Fuse::AimedAround), HashSet::from([2]));
     assert_eq!(margins(Fuse::Aimed), HashSet::from([0]));
+}
+
+/// Shading has a loop for the azimuths that follow the diagonals of the cells and one for the others: of each batch the first ones, and
+/// as many as it is given. Some batches hold both.
+#[test]
+fn batches_begin_with_azimuths_that_follow_the_diagonals() {
+    const FIRST_AZIMUTH: usize = offset("ShadePush", "first_azimuth");
+    const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
+    const ALONG_COUNT: usize = offset("ShadePush", "along_count");
+    let scene = under_everything(flat(70, 90), Border::Plane);
+    let follows = |flags: u32| (flags & FLIPS_MARCH != 0) == (flags & FLIPS_LANES != 0);
+    let mut mixed = 0;
+    for azimuths in [4, 7, 64, 101] {
+        let quality = Quality { azimuths, ..Quality::default() };
+        let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default());
+        let plan = plan.expect("a plan");
+        let shaded = plan.passes.iter().filter(|p| ["sky_shade", "sun_shade"].contains(&p.name()));
+        for pass in shaded {
+            let [first, count, along] = [FIRST_AZIMUTH, AZIMUTH_COUNT, ALONG_COUNT].map(|at| {
+                u32::from_le_bytes(pass.push[at..at + 4].try_into().expect("four bytes")) as usize
+            });
+            let found: Vec<bool> =
+                plan.azimuths[first..first + count].iter().map(|a| follows(a.flags)).collect();
+            let want: Vec<bool> = (0..count).map(|k| k < along).collect();
+            assert_eq!(found, want, "{azimuths} {}", pass.label());
+            mixed += usize::from(along > 0 && along < count);
+        }
+    }
+    assert!(mixed >= 4, "{mixed}");
 }
 
 /// One pass a bounce, after the arriving light is resolved; exit radiance in one image used in turn, or in a

@@ -39,19 +39,22 @@ const RISE: f64 = 0.05;
 /// Iterations of loops without an entry in [`iterations`].
 const OTHERS: [f64; 4] = [32.0, 4.0, 4.0, 4.0];
 
+/// Azimuths of a shading batch.
+const SHADED: f64 = 32.0;
+
 /// Assumed iterations of a pass's loops, outermost first. Deeper loops and other passes use [`OTHERS`]: weights, not
-/// measurements.
-fn iterations(pass: &str, depth: usize) -> f64 {
-    // A sweep marches 1,024 steps, with about 1.4 iterations of the loop that pops on an elevation model. A shading batch
-    // has 32 azimuths.
+/// measurements. `deepest`: the depth of the innermost loop.
+fn iterations(pass: &str, depth: usize, deepest: usize) -> f64 {
+    // A sweep marches 1,024 steps, with about 1.4 iterations of the loop that pops on an elevation model.
     let known: &[f64] = match pass {
         "horizon_sweep" => &[1024.0, 1.4],
         // Four steps each; an iteration of the inner loop pops up to two.
         ONE_LINE => &[256.0, 0.8],
         // In 16 segments, which are marched twice.
         "shadow_sweep" => &[16.0],
-        // Inside, the three steps of raise_beside.
-        "sky_shade" | "sun_shade" => &[32.0, 3.0],
+        // With raise_beside and its three steps there is a loop for each half of the azimuths.
+        "sky_shade" | "sun_shade" | "sh_visibility" if deepest > 1 => &[SHADED / 2.0, 3.0],
+        "sky_shade" | "sun_shade" => &[SHADED],
         _ => &[],
     };
     (0..depth).map(|d| known.get(d).or(OTHERS.get(d)).copied().unwrap_or(4.0)).product()
@@ -255,7 +258,9 @@ fn read(said: &str) -> Vec<(String, String, Figures)> {
                     .unwrap_or_else(|| panic!("{scene}, {name}: no statistic {name}"))
             };
             let by_depth = by_depth(assembly);
-            let weighted = |(depth, count): (usize, &u64)| *count as f64 * iterations(name, depth);
+            let deepest = by_depth.len() - 1;
+            let weighted =
+                |(depth, count): (usize, &u64)| *count as f64 * iterations(name, depth, deepest);
             let executed = by_depth.iter().enumerate().map(weighted).sum();
             rows.push((
                 scene.to_owned(),
@@ -276,9 +281,12 @@ fn read(said: &str) -> Vec<(String, String, Figures)> {
 
 /// Instructions of the loop over steps or azimuths for each of its four texels; none for other passes.
 fn per_texel(name: &str, figures: &Figures) -> Option<f64> {
+    let deepest = figures.by_depth.len() - 1;
     let inner = figures.by_depth.iter().enumerate().skip(1);
-    let executed: f64 = inner.map(|(depth, count)| *count as f64 * iterations(name, depth)).sum();
-    BY_FOUR.contains(&name).then(|| executed / iterations(name, 1) / 4.0)
+    let executed: f64 =
+        inner.map(|(depth, count)| *count as f64 * iterations(name, depth, deepest)).sum();
+    let outermost = if name == "horizon_sweep" { iterations(name, 1, deepest) } else { SHADED };
+    BY_FOUR.contains(&name).then(|| executed / outermost / 4.0)
 }
 
 type Row = (String, String, Figures);
@@ -420,9 +428,9 @@ fn tables_are_read_as_written_and_rises_are_found() {
         (figures.registers, figures.spilled, figures.scratch, figures.occupancy),
         (56, 3, 16, 8)
     );
-    // 2 + 3 · 32 + 3 · 32 · 3.
-    assert_eq!(figures.executed, 386.0);
-    assert_eq!(per_texel("sky_shade", figures), Some((3.0 + 3.0 * 3.0) / 4.0));
+    // 2 + 3 · 16 + 3 · 16 · 3, of 32 azimuths.
+    assert_eq!(figures.executed, 194.0);
+    assert_eq!(per_texel("sky_shade", figures), Some((3.0 + 3.0 * 3.0) / 2.0 / 4.0));
     assert_eq!(parsed(&table("d", &rows)), rows);
     assert_eq!(rises(&rows, &rows), Vec::<String>::new());
     let change = |change: fn(&mut Figures)| {

@@ -67,10 +67,16 @@ impl Azimuth {
         self.flags & MARCHES_ROWS != 0
     }
 
-    /// Which of eight octants it lies in; 0..4 march along columns, 4..8 along rows.
+    /// Which of eight octants it lies in; 0..4 march along columns, 4..8 along rows. Of each four, the first two
+    /// [follow the diagonals](Self::follows_diagonals).
     pub(crate) fn octant(&self) -> usize {
         let flips = (self.flags & (FLIPS_MARCH | FLIPS_LANES)) as usize >> 1;
-        flips + if self.marches_rows() { 4 } else { 0 }
+        [0, 2, 3, 1][flips] + if self.marches_rows() { 4 } else { 0 }
+    }
+
+    /// Whether the diagonals of the cells lie between its march axis and its lane axis.
+    pub(crate) fn follows_diagonals(&self) -> bool {
+        (self.flags & FLIPS_MARCH != 0) == (self.flags & FLIPS_LANES != 0)
     }
 
     /// The azimuth that its lines follow, radians: within 1.6e-5 of the requested one.

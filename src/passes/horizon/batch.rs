@@ -27,6 +27,8 @@ pub struct Batch {
     pub first: u32,
     /// Number of azimuths.
     pub count: u32,
+    /// Of these, how many follow the diagonals of the cells: the first ones.
+    pub along: u32,
     /// Lines of the azimuth with the most lines.
     pub most_lines: u32,
     /// Points on all lines.
@@ -144,6 +146,7 @@ fn cut_at(
                 number: batches.len() as u32,
                 first: first + i as u32,
                 count: 0,
+                along: 0,
                 most_lines: 0,
                 line_texels: 0,
                 layers: 0,
@@ -155,6 +158,7 @@ fn cut_at(
         azimuth.layer = batch.layers;
         batch.layers += layers;
         batch.count += 1;
+        batch.along += u32::from(azimuth.follows_diagonals());
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
         batch.line_texels += sweep.line_texels(azimuth, axis);
     }
@@ -313,7 +317,8 @@ pub(crate) fn cut_groups<'a>(
         for (layer, azimuth) in (0..).zip(list.iter_mut()) {
             azimuth.horizon_layer = layer;
         }
-        // Azimuths of one octant share neighbours, so they go next to each other.
+        // Azimuths of one octant share neighbours, so they go next to each other. Of an axis, those along the cells' diagonals come first:
+        // shading has a loop for them.
         list.sort_by_key(Azimuth::octant);
     }
     // The cut so far with the fewest batches, and its lists.

@@ -1,5 +1,5 @@
-//! `gather.glsl`: iterates over the azimuths at one grid point. The shader's order by octants only saves loads; here
-//! azimuths come in their own.
+//! `gather.glsl`: iterates over the azimuths at one grid point. The shader's order by octants only saves loads and operations;
+//! here azimuths come in their own.
 
 use super::field::{field_slope, normal_of};
 use super::fuse::{Found, fused};
