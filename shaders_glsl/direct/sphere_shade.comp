@@ -145,8 +145,9 @@ float specular_between(vec2 low, vec2 high) {
 // Adds the elevations between two directions to the parts of the disc.
 void add_to_parts(vec2 low, vec2 high) {
     vec4 ends = arc_tangent(vec4(low.y, high.y, 0.0, 0.0) / max(vec4(low.x, high.x, 1.0, 1.0), 1e-30));
-    vec4 from = clamp(vec4(ends.x), part_begins, part_begins + part_rad);
-    vec4 to = clamp(vec4(ends.y), part_begins, part_begins + part_rad);
+    vec4 part_ends = part_begins + part_rad;
+    vec4 from = min(max(vec4(ends.x), part_begins), part_ends);
+    vec4 to = min(max(vec4(ends.y), part_begins), part_ends);
     vec4 visible = max(to - from, 0.0);
     part_visible += visible;
     part_moment += 0.5 * visible * (from + to);
@@ -157,7 +158,7 @@ void add_to_parts(vec2 low, vec2 high) {
 vec4 part_harmonics(vec2 e) {
     vec4 flat_parts;
     vec4 up;
-    vec4 middle = clamp(part_moment / max(part_visible, 1e-30), part_begins, part_begins + part_rad);
+    vec4 middle = min(max(part_moment / max(part_visible, 1e-30), part_begins), part_begins + part_rad);
     for (int k = 0; k < 4; k++) {
         vec2 direction = turned(axis, vec2(cosine(middle[k]), sine(middle[k])));
         flat_parts[k] = max(direction.x, 0.0);

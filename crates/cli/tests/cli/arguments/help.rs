@@ -48,7 +48,7 @@ fn help_gives_units_and_defaults() {
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0 to 1", "Default 1"]),
-        ("--specular", &["0 to 10000", "0 to 1", ".npy", "`reference` reflects all lights"]),
+        ("--specular", &["0 to 10000", "0 to 1", ".npy", "mirror direction"]),
     ];
     let render: &[(&str, &[&str])] = &[
         ("--exposure", &["99th percentile", "0.8"]),
